@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Finds the first particle that a diverging run has spoilt: a field that is not finite, or a volume that is
+/// not positive (J <= 0).
+#pragma once
+
+#include <vsb/views/particles.hpp>
+
+namespace vsb {
+
+enum class ParticleField { position, velocity, cauchy_stress, volume, none };
+
+/// A particle and the field that is wrong with it; particle -1 where all is well.
+struct Invalid {
+  int particle;
+  ParticleField field;
+};
+
+namespace kernel {
+
+/// The first spoilt field of one particle.
+template <int Dim, class Real, class Device>
+struct CheckParticle {
+  Particles<Dim, Real, Device> particles;
+
+  template <class Row>
+  KOKKOS_FUNCTION static bool finite(const Row& row) {
+    for (int c = 0; c < Row::size; ++c)
+      if (!math::isfinite(row[c])) return false;
+    return true;
+  }
+  KOKKOS_FUNCTION ParticleField field(int p) const {
+    if (!finite(particles.position_of(p))) return ParticleField::position;
+    if (!finite(particles.velocity_of(p))) return ParticleField::velocity;
+    if (!finite(particles.stress_of(p))) return ParticleField::cauchy_stress;
+    if (!(particles.volume(p) > 0) || !math::isfinite(particles.volume(p))) return ParticleField::volume;
+    return ParticleField::none;
+  }
+  KOKKOS_FUNCTION void operator()(int p, int& lowest) const {
+    if (field(p) != ParticleField::none) lowest = math::min(lowest, p);
+  }
+};
+
+/// Runs CheckParticle::field for one particle where the data is.
+template <int Dim, class Real, class Device>
+struct NameField {
+  CheckParticle<Dim, Real, Device> check;
+  int particle;
+  KOKKOS_FUNCTION void operator()(int, int& code) const { code = static_cast<int>(check.field(particle)); }
+};
+
+}  // namespace kernel
+
+/// The spoilt particle of lowest number. Waits for the device.
+template <class Exec, int Dim, class Real, class Device>
+Invalid find_invalid(const Exec& exec, const Particles<Dim, Real, Device>& particles) {
+  const int n = particles.count();
+  const kernel::CheckParticle<Dim, Real, Device> check{particles};
+  int lowest = n;
+  Kokkos::parallel_reduce("vsb::find_invalid", Kokkos::RangePolicy<Exec>(exec, 0, n), check,
+                          Kokkos::Min<int>(lowest));
+  exec.fence();
+  if (lowest >= n) return {-1, ParticleField::none};
+  int code = 0;
+  Kokkos::parallel_reduce("vsb::name_invalid_field", Kokkos::RangePolicy<Exec>(exec, 0, 1),
+                          kernel::NameField<Dim, Real, Device>{check, lowest}, code);
+  exec.fence();
+  return {lowest, static_cast<ParticleField>(code)};
+}
+
+}  // namespace vsb

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Finds the bin of every particle, and sorts the particles by bin.
+///
+/// Reads positions; writes ParticleBins. A stable counting sort: the place of a particle within its bin does
+/// not depend on the order in which threads run.
+#pragma once
+
+#include <vsb/views/particle_bins.hpp>
+#include <vsb/views/particles.hpp>
+
+namespace vsb {
+
+/// What locate_particles found.
+struct Whereabouts {
+  bool changed;  ///< some particle is in another bin than before
+  int lost;      ///< lowest number of a particle outside the grid (or at NaN), -1 where there is none
+};
+
+namespace kernel {
+
+/// One particle: its bin. The reduction's minimum is p - n for a lost particle p of n, else 0 after a change
+/// of bin, else 1.
+template <class Basis, int Dim, class Real, class Device>
+struct LocateParticle {
+  Particles<Dim, Real, Device> particles;
+  Basis basis;
+  typename ParticleBins<Device>::Ints bin;
+
+  KOKKOS_FUNCTION void operator()(int p, int& minimum) const {
+    const auto x = particles.position_of(p);
+    int found = 1;
+    if (!basis.contains(x)) {
+      found = p - particles.count();
+    } else {
+      const int b = basis.bin(x);
+      if (b != bin(p)) found = 0;
+      bin(p) = b;
+    }
+    minimum = math::min(minimum, found);
+  }
+};
+
+template <class Device>
+struct CountInBin {
+  ParticleBins<Device> bins;
+  KOKKOS_FUNCTION void operator()(int p) const { Kokkos::atomic_add(&bins.cursor(bins.bin(p)), 1); }
+};
+
+/// Exclusive sum of the bins' counts.
+template <class Device>
+struct ScanOffsets {
+  ParticleBins<Device> bins;
+  KOKKOS_FUNCTION void operator()(int b, int& sum, bool final) const {
+    const int count = bins.cursor(b);
+    if (final) {
+      bins.offset(b) = sum;
+      bins.cursor(b) = sum;
+      if (b + 1 == static_cast<int>(bins.slot.extent(0))) bins.offset(b + 1) = sum + count;
+    }
+    sum += count;
+  }
+};
+
+/// Numbers the occupied bins.
+template <class Device>
+struct ScanOccupied {
+  ParticleBins<Device> bins;
+  KOKKOS_FUNCTION void operator()(int b, int& sum, bool final) const {
+    const bool filled = bins.offset(b + 1) > bins.offset(b);
+    if (final) {
+      bins.slot(b) = filled ? sum : -1;
+      if (filled) bins.occupied(sum) = b;
+    }
+    if (filled) ++sum;
+  }
+};
+
+template <class Device>
+struct PlaceInBin {
+  ParticleBins<Device> bins;
+  KOKKOS_FUNCTION void operator()(int p) const {
+    bins.order(Kokkos::atomic_fetch_add(&bins.cursor(bins.bin(p)), 1)) = p;
+  }
+};
+
+/// Insertion sort of one bin's particle numbers: short lists, mostly in order already.
+template <class Device>
+struct SortBin {
+  ParticleBins<Device> bins;
+  KOKKOS_FUNCTION void operator()(int s) const {
+    const int begin = bins.offset(bins.occupied(s)), end = bins.offset(bins.occupied(s) + 1);
+    for (int i = begin + 1; i < end; ++i) {
+      const int p = bins.order(i);
+      int j = i;
+      for (; j > begin && bins.order(j - 1) > p; --j) bins.order(j) = bins.order(j - 1);
+      bins.order(j) = p;
+    }
+  }
+};
+
+}  // namespace kernel
+
+/// Updates bins.bin. Returns on the host, so it waits for the device.
+template <class Exec, class Basis, int Dim, class Real, class Device>
+Whereabouts locate_particles(const Exec& exec, const Particles<Dim, Real, Device>& particles,
+                             const ParticleBins<Device>& bins, const Basis& basis) {
+  const int n = particles.count();
+  int minimum = 1;
+  Kokkos::parallel_reduce("vsb::locate_particles", Kokkos::RangePolicy<Exec>(exec, 0, n),
+                          kernel::LocateParticle<Basis, Dim, Real, Device>{particles, basis, bins.bin},
+                          Kokkos::Min<int>(minimum));
+  exec.fence();
+  return {minimum <= 0, minimum < 0 ? minimum + n : -1};
+}
+
+/// Sorts the particles by the bins that locate_particles found. Waits for the device.
+template <class Exec, class Device>
+void sort_by_bin(const Exec& exec, ParticleBins<Device>& bins) {
+  const int particles = static_cast<int>(bins.bin.extent(0)),
+            bin_count = static_cast<int>(bins.slot.extent(0));
+  const Kokkos::RangePolicy<Exec> over_particles(exec, 0, particles), over_bins(exec, 0, bin_count);
+  Kokkos::deep_copy(exec, bins.cursor, 0);
+  Kokkos::parallel_for("vsb::count_in_bin", over_particles, kernel::CountInBin<Device>{bins});
+  Kokkos::parallel_scan("vsb::scan_offsets", over_bins, kernel::ScanOffsets<Device>{bins});
+  Kokkos::parallel_for("vsb::place_in_bin", over_particles, kernel::PlaceInBin<Device>{bins});
+  int occupied = 0;
+  Kokkos::parallel_scan("vsb::scan_occupied", over_bins, kernel::ScanOccupied<Device>{bins}, occupied);
+  exec.fence();
+  bins.occupied_count = occupied;
+  Kokkos::parallel_for("vsb::sort_bin", Kokkos::RangePolicy<Exec>(exec, 0, occupied),
+                       kernel::SortBin<Device>{bins});
+}
+
+}  // namespace vsb

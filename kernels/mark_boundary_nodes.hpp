@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Algorithm 1: the nodes at which the virtual stress acts.
+///   E1: void cells (no particle inside) that have an active node, that is, that touch a non-void cell;
+///   E2: non-void cells that share a node with a cell of E1;
+///   N1: active nodes of cells of E1 or E2.
+///
+/// Cells and nodes are rows of bits along x, 64 to a word, and every "touches" is a dilation of bit rows.
+/// There are no cells beyond a face of the grid, so a fixed or symmetry plane there makes no boundary; a free
+/// boundary needs a void cell beyond it.
+#pragma once
+
+#include <vsb/physics/uniform_grid.hpp>
+#include <vsb/views/nodes.hpp>
+#include <vsb/views/particles.hpp>
+
+namespace vsb {
+
+/// Bit sets of cells, one row of words per row of cells along x; kept between calls.
+template <class Device>
+struct CellBits {
+  using Word = std::uint64_t;
+  using Rows = Kokkos::View<Word**, Kokkos::LayoutRight, Device>;
+  Rows occupied;  ///< [row][word]: non-void cells
+  Rows exterior;  ///< [row][word]: E1
+  Rows boundary;  ///< [row][word]: E1 and E2
+};
+
+/// How rows of bits along x tile a grid.
+template <int Dim>
+struct BitRows {
+  int cells_x;
+  Vector<2, int> cell_rows;  ///< rows of cells in y and z
+  Vector<2, int> node_rows;  ///< rows of nodes in y and z
+  int words;                 ///< words per row, of cells and of nodes
+
+  template <class Real>
+  KOKKOS_FUNCTION explicit BitRows(const UniformGrid<Dim, Real>& grid) : cells_x(grid.cells[0]) {
+    for (int i = 0; i < 2; ++i) {
+      cell_rows[i] = i + 1 < Dim ? grid.cells[i + 1] : 1;
+      node_rows[i] = i + 1 < Dim ? grid.cells[i + 1] + 1 : 1;
+    }
+    words = (cells_x + 1 + 63) / 64;
+  }
+  KOKKOS_FUNCTION int cell_row_count() const { return cell_rows[0] * cell_rows[1]; }
+  KOKKOS_FUNCTION int node_row_count() const { return node_rows[0] * node_rows[1]; }
+};
+
+/// Allocates bit sets for a grid.
+template <class Device, int Dim, class Real>
+CellBits<Device> allocate_cell_bits(const UniformGrid<Dim, Real>& grid) {
+  const BitRows<Dim> rows(grid);
+  const auto r = static_cast<size_t>(rows.cell_row_count()), w = static_cast<size_t>(rows.words);
+  using Rows = typename CellBits<Device>::Rows;
+  return {Rows("vsb::cells_occupied", r, w), Rows("vsb::cells_exterior", r, w),
+          Rows("vsb::cells_boundary", r, w)};
+}
+
+namespace kernel {
+
+/// One particle: marks its cell as non-void.
+template <int Dim, class Real, class Device>
+struct MarkOccupied {
+  Particles<Dim, Real, Device> particles;
+  UniformGrid<Dim, Real> grid;
+  typename CellBits<Device>::Rows occupied;
+
+  KOKKOS_FUNCTION void operator()(int p) const {
+    const auto cell = grid.cell_of(grid.in_cells(particles.position_of(p)));
+    int row = 0;
+    for (int i = Dim - 1; i > 0; --i) row = row * grid.cells[i] + cell[i];
+    Kokkos::atomic_fetch_or(&occupied(row, cell[0] / 64), std::uint64_t(1) << (cell[0] % 64));
+  }
+};
+
+/// Word w of the union of cell rows (j, k), first[0] <= j <= last[0], first[1] <= k <= last[1], each dilated
+/// by one cell towards lower x (if `both`) and one towards higher x.
+template <int Dim, class Rows>
+KOKKOS_INLINE_FUNCTION std::uint64_t dilated_word(const Rows& bits, const BitRows<Dim>& tiling, int w,
+                                                  const Vector<2, int>& first, const Vector<2, int>& last,
+                                                  bool both) {
+  std::uint64_t result = 0;
+  for (int k = math::max(first[1], 0); k <= math::min(last[1], tiling.cell_rows[1] - 1); ++k)
+    for (int j = math::max(first[0], 0); j <= math::min(last[0], tiling.cell_rows[0] - 1); ++j) {
+      const int row = k * tiling.cell_rows[0] + j;
+      const std::uint64_t x = bits(row, w);
+      result |= x | x << 1;
+      if (w > 0) result |= bits(row, w - 1) >> 63;
+      if (both) {
+        result |= x >> 1;
+        if (w + 1 < tiling.words) result |= bits(row, w + 1) << 63;
+      }
+    }
+  return result;
+}
+
+/// The bits of word w that stand for one of `count` cells or nodes.
+KOKKOS_INLINE_FUNCTION std::uint64_t valid_bits(int w, int count) {
+  const int left = count - 64 * w;
+  return left >= 64 ? ~std::uint64_t(0) : left <= 0 ? 0 : (std::uint64_t(1) << left) - 1;
+}
+
+/// Word w of row r: the cells that touch a cell of `source`, the cells of `source` included.
+template <int Dim, class Rows>
+KOKKOS_INLINE_FUNCTION std::uint64_t touching_cells(const Rows& source, const BitRows<Dim>& tiling, int r,
+                                                    int w) {
+  const Vector<2, int> at{{r % tiling.cell_rows[0], r / tiling.cell_rows[0]}};
+  return dilated_word(source, tiling, w, {{at[0] - 1, at[1] - 1}}, {{at[0] + 1, at[1] + 1}}, true) &
+         valid_bits(w, tiling.cells_x);
+}
+
+/// E1, word by word.
+template <int Dim, class Device>
+struct FindExterior {
+  CellBits<Device> bits;
+  BitRows<Dim> tiling;
+  KOKKOS_FUNCTION void operator()(int i) const {
+    const int r = i / tiling.words, w = i % tiling.words;
+    bits.exterior(r, w) = touching_cells(bits.occupied, tiling, r, w) & ~bits.occupied(r, w);
+  }
+};
+
+/// E1 and E2, word by word.
+template <int Dim, class Device>
+struct FindBoundary {
+  CellBits<Device> bits;
+  BitRows<Dim> tiling;
+  KOKKOS_FUNCTION void operator()(int i) const {
+    const int r = i / tiling.words, w = i % tiling.words;
+    bits.boundary(r, w) =
+        bits.exterior(r, w) | (touching_cells(bits.exterior, tiling, r, w) & bits.occupied(r, w));
+  }
+};
+
+/// N1: one word of nodes; counts those at which a traction acts.
+template <int Dim, class Device>
+struct MarkNodes {
+  CellBits<Device> bits;
+  BitRows<Dim> tiling;
+  BoundaryNodes<Device> tractions;
+  BoundaryNodes<Device> boundary;
+
+  KOKKOS_FUNCTION void operator()(int i, int& count) const {
+    const int r = i / tiling.words, w = i % tiling.words;
+    const Vector<2, int> at{{r % tiling.node_rows[0], r / tiling.node_rows[0]}};
+    const Vector<2, int> before{{at[0] - 1, at[1] - 1}};
+    const std::uint64_t active = dilated_word(bits.occupied, tiling, w, before, at, false);
+    const std::uint64_t marked = active & dilated_word(bits.boundary, tiling, w, before, at, false);
+    const int nodes = math::min(tiling.cells_x + 1 - 64 * w, 64);
+    for (int b = 0; b < nodes; ++b) {
+      const int node = r * (tiling.cells_x + 1) + 64 * w + b;
+      boundary(node) = marked >> b & 1 ? tractions(node) : 0;
+      if (boundary(node) != 0) ++count;
+    }
+  }
+};
+
+}  // namespace kernel
+
+/// Overwrites boundary[node] with tractions[node] at the nodes of N1 and with 0 elsewhere. tractions[node]
+/// says which tractions are declared at the place of a node (bit k: traction k). All particles must lie in
+/// the grid. Returns the number of nodes at which a traction acts; waits for the device.
+template <class Exec, int Dim, class Real, class Device>
+int mark_boundary_nodes(const Exec& exec, const Particles<Dim, Real, Device>& particles,
+                        const CellBits<Device>& bits, const UniformGrid<Dim, Real>& grid,
+                        const BoundaryNodes<Device>& tractions, const BoundaryNodes<Device>& boundary) {
+  const BitRows<Dim> tiling(grid);
+  const Kokkos::RangePolicy<Exec> over_cell_words(exec, 0, tiling.cell_row_count() * tiling.words);
+  const Kokkos::RangePolicy<Exec> over_node_words(exec, 0, tiling.node_row_count() * tiling.words);
+  Kokkos::deep_copy(exec, bits.occupied, std::uint64_t(0));
+  Kokkos::parallel_for("vsb::mark_occupied", Kokkos::RangePolicy<Exec>(exec, 0, particles.count()),
+                       kernel::MarkOccupied<Dim, Real, Device>{particles, grid, bits.occupied});
+  Kokkos::parallel_for("vsb::find_exterior_cells", over_cell_words,
+                       kernel::FindExterior<Dim, Device>{bits, tiling});
+  Kokkos::parallel_for("vsb::find_boundary_cells", over_cell_words,
+                       kernel::FindBoundary<Dim, Device>{bits, tiling});
+  int count = 0;
+  Kokkos::parallel_reduce("vsb::mark_boundary_nodes", over_node_words,
+                          kernel::MarkNodes<Dim, Device>{bits, tiling, tractions, boundary}, count);
+  exec.fence();
+  return count;
+}
+
+}  // namespace vsb

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Particles to grid, with the virtual stress fused in (Eqs. 10, 11, 27, 28):
+///   m_I = sum_p N_Ip m_p,   p_I = sum_p N_Ip m_p v_p,
+///   f_I = sum_p -V_p (sigma_p - chi_I sbar) . grad N_Ip + N_Ip (m_p b + chi_I V_p fbar),
+/// chi_I = 1 at the boundary nodes N1 of Algorithm 1. Sums at a boundary node run over all particles of its
+/// support.
+///
+/// Reads particles and the traction masks of the nodes; writes mass, momentum and force of all nodes.
+#pragma once
+
+#include <vsb/kernels/scatter.hpp>
+#include <vsb/physics/virtual_stress.hpp>
+#include <vsb/views/nodes.hpp>
+#include <vsb/views/particles.hpp>
+
+namespace vsb {
+
+namespace kernel {
+
+template <class Basis, class Field, int Dim, class Real, class Device>
+struct ParticlesToGrid {
+  static constexpr int columns = Nodes<Dim, Real, Device>::sum_columns;
+  Particles<Dim, Real, Device> particles;
+  Basis basis;
+  Field virtual_stress;
+  BoundaryNodes<Device> boundary;
+  Vector<Dim, Real> gravity;  ///< b, m/s^2
+
+  template <class Sink>
+  KOKKOS_FUNCTION void operator()(int p, const Sink& sink) const {
+    const auto x = particles.position_of(p);
+    const auto v = particles.velocity_of(p);
+    const auto sigma = particles.stress_of(p);
+    const Real m = particles.mass(p), V = particles.volume(p);
+    const auto shape = basis.shape(x);
+
+    auto stress = sigma;            // sigma - chi sbar
+    auto body_force = m * gravity;  // m b + chi V fbar
+    [[maybe_unused]] TractionMask chi = 0;
+    for (int a = 0; a < Basis::support; ++a) {
+      const int I = shape.node[a];
+      if constexpr (Field::loaded) {
+        if (boundary(I) != chi) {
+          chi = boundary(I);
+          const auto bar = virtual_stress.at(x, chi);
+          stress = sigma - bar.stress;
+          body_force = m * gravity + V * bar.divergence;
+        }
+      }
+      const auto f = shape.N[a] * body_force - V * (stress * shape.dN[a]);
+      const Real Nm = shape.N[a] * m;
+      sink(a, I, 0) += Nm;
+      for (int i = 0; i < Dim; ++i) sink(a, I, 1 + i) += Nm * v[i];
+      for (int i = 0; i < Dim; ++i) sink(a, I, 1 + Dim + i) += f[i];
+    }
+  }
+};
+
+}  // namespace kernel
+
+/// Overwrites nodes.sums. `boundary` is read only where `virtual_stress` is a loaded field.
+template <class Exec, class Basis, class Field, int Dim, class Real, class Device>
+void particles_to_grid(const Exec& exec, const Particles<Dim, Real, Device>& particles,
+                       const ParticleBins<Device>& bins, const Nodes<Dim, Real, Device>& nodes,
+                       const BoundaryNodes<Device>& boundary, ScatterWorkspace<Real, Device>& workspace,
+                       const Basis& basis, const Field& virtual_stress, const Vector<Dim, Real>& gravity,
+                       Scatter strategy) {
+  scatter(exec, "vsb::particles_to_grid", strategy, particles.count(), basis, bins, workspace,
+          kernel::ParticlesToGrid<Basis, Field, Dim, Real, Device>{particles, basis, virtual_stress, boundary,
+                                                                   gravity},
+          nodes.sums);
+}
+
+}  // namespace vsb

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// One explicit MUSL step with FLIP velocities and virtual stress boundaries, in the paper's order.
+#pragma once
+
+#include <vector>
+#include <vsb/kernels/grid_to_particles.hpp>
+#include <vsb/kernels/particles_to_grid.hpp>
+#include <vsb/kernels/remap_velocity.hpp>
+#include <vsb/kernels/update_nodes.hpp>
+#include <vsb/kernels/update_occupancy.hpp>
+#include <vsb/kernels/update_stress.hpp>
+
+namespace vsb {
+
+/// What a step works on.
+template <int Dim, class Real, class Device>
+struct State {
+  Particles<Dim, Real, Device> particles;
+  Nodes<Dim, Real, Device> nodes;
+  Occupancy<Device> occupancy;
+  ScatterWorkspace<Real, Device> sums_workspace, remap_workspace;
+};
+
+/// Allocates the nodes and the occupancy for given particles.
+template <class Basis, int Dim, class Real, class Device>
+State<Dim, Real, Device> make_state(const Particles<Dim, Real, Device>& particles, const Basis& basis) {
+  particles.check();
+  State<Dim, Real, Device> s;
+  s.particles = particles;
+  s.nodes = allocate_nodes<Dim, Real, Device>(basis.node_count());
+  s.occupancy = allocate_occupancy<Device>(particles.count(), basis);
+  return s;
+}
+
+/// What stays the same over many steps.
+template <int Dim, class Real>
+struct StepOptions {
+  Real dt;                                                ///< s
+  Real damping = 0;                                       ///< Cundall's alpha
+  Vector<Dim, Real> gravity = Vector<Dim, Real>::zero();  ///< m/s^2
+  VolumeUpdate volume_update = DeterminantVolume{};
+  Scatter scatter = Scatter::gathered;
+};
+
+/// Advances the state by one step; `virtual_stress` is the field at the end of the step. Returns -1, or the
+/// lowest number of a particle outside the grid; the step is then not made.
+template <class Exec, class Basis, class Field, int Dim, class Real, class Device>
+int step(const Exec& exec, State<Dim, Real, Device>& s, const std::vector<Body<Real>>& bodies,
+         const Basis& basis, const Field& virtual_stress, const StepOptions<Dim, Real>& options) {
+  const ProfilingRegion region("vsb::step");
+
+  const int lost = update_occupancy(exec, s.particles, s.occupancy, basis);
+  if (lost >= 0) return lost;
+  particles_to_grid(exec, s.particles, s.occupancy.bins, s.nodes, s.occupancy.boundary, s.sums_workspace,
+                    basis, virtual_stress, options.gravity, options.scatter);
+  update_nodes(exec, s.nodes, options.damping, options.dt);
+  grid_to_particles(exec, s.particles, s.nodes, basis, options.dt);
+  remap_velocity(exec, s.particles, s.occupancy.bins, s.nodes, s.remap_workspace, basis, options.scatter);
+  update_stress(exec, s.particles, s.nodes, bodies, basis, options.volume_update, options.dt);
+  return -1;
+}
+
+}  // namespace vsb

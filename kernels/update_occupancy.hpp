@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// What follows from where the particles are: their bins, and, when a particle has changed its bin, the order
+/// of the particles within the bins and the boundary nodes.
+#pragma once
+
+#include <vsb/kernels/locate_particles.hpp>
+#include <vsb/kernels/mark_boundary_nodes.hpp>
+
+namespace vsb {
+
+/// Cells, bins and boundary nodes of a set of particles; kept from step to step.
+template <class Device>
+struct Occupancy {
+  ParticleBins<Device> bins;
+  CellBits<Device> cells;
+  BoundaryNodes<Device> tractions;  ///< [node]: the tractions declared at the node's place
+  BoundaryNodes<Device> boundary;   ///< [node]: the tractions that act there, N1 of Algorithm 1
+  int boundary_node_count = 0;
+};
+
+/// Allocates the occupancy of `particles` particles; no traction is declared anywhere yet.
+template <class Device, class Basis>
+Occupancy<Device> allocate_occupancy(int particles, const Basis& basis) {
+  const auto nodes = static_cast<size_t>(basis.node_count());
+  Occupancy<Device> o;
+  o.bins = allocate_bins<Device>(particles, basis.bin_count());
+  o.cells = allocate_cell_bits<Device>(basis.grid);
+  o.tractions = BoundaryNodes<Device>("vsb::declared_tractions", nodes);
+  o.boundary = BoundaryNodes<Device>("vsb::boundary_nodes", nodes);
+  return o;
+}
+
+/// Brings the occupancy up to date. Returns the lowest number of a particle that left the grid, else -1.
+template <class Exec, class Basis, int Dim, class Real, class Device>
+int update_occupancy(const Exec& exec, const Particles<Dim, Real, Device>& particles, Occupancy<Device>& o,
+                     const Basis& basis) {
+  const auto where = locate_particles(exec, particles, o.bins, basis);
+  if (where.changed && where.lost < 0) {
+    sort_by_bin(exec, o.bins);
+    o.boundary_node_count =
+        mark_boundary_nodes(exec, particles, o.cells, basis.grid, o.tractions, o.boundary);
+  }
+  return where.lost;
+}
+
+}  // namespace vsb

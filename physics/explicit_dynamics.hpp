@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Explicit time integration at one node: local damping, and the time step that stability allows.
+#pragma once
+
+#include <vsb/views/tensor.hpp>
+
+namespace vsb {
+
+/// Cundall's local damping of one force component: f <- f - alpha |f| sign(v). It acts on the unbalanced
+/// force, so it vanishes in equilibrium; it is not Galilean invariant, so never use it on a body that moves
+/// as a whole.
+template <class T>
+KOKKOS_INLINE_FUNCTION T cundall_damped(T force, T velocity, T alpha) {
+  const T drag = alpha * math::abs(force);
+  return velocity > T(0) ? force - drag : velocity < T(0) ? force + drag : force;
+}
+
+/// dt = kappa h / sqrt(M / rho), Eq. (29): the share kappa of the time a compression wave takes to cross a
+/// cell. h in m, constrained modulus M in Pa, density rho in kg/m^3; s.
+inline double time_step(double kappa, double h, double constrained_modulus, double density) {
+  return kappa * h / math::sqrt(constrained_modulus / density);
+}
+
+}  // namespace vsb

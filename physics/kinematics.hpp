@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Strain increment, spin and volume change of a particle over one step, from the velocity gradient L.
+#pragma once
+
+#include <vsb/views/tensor.hpp>
+
+namespace vsb {
+
+/// dt sym(L): the strain increment; its shear components are those of the tensor (half the engineering
+/// shear).
+template <int Dim, class T>
+KOKKOS_INLINE_FUNCTION SymmetricTensor<Dim, T> strain_increment(const Matrix<Dim, T>& L, T dt) {
+  auto e = SymmetricTensor<Dim, T>::zero();
+  for (int i = 0; i < Dim; ++i) {
+    e[i] = dt * L(i, i);
+    for (int j = i + 1; j < Dim; ++j) e[symmetric_index(i, j)] = T(0.5) * dt * (L(i, j) + L(j, i));
+  }
+  return e;
+}
+
+/// dt (w sigma - sigma w) with the spin w = skew(L): what the Jaumann rate adds to a stress increment, so
+/// that the stress turns with the material.
+template <int Dim, class T>
+KOKKOS_INLINE_FUNCTION SymmetricTensor<Dim, T> jaumann_rotation(const SymmetricTensor<Dim, T>& sigma,
+                                                                const Matrix<Dim, T>& L, T dt) {
+  auto r = SymmetricTensor<Dim, T>::zero();
+  if constexpr (Dim > 1) {
+    Matrix<Dim, T> w;
+    for (int i = 0; i < Dim; ++i)
+      for (int j = 0; j < Dim; ++j) w(i, j) = T(0.5) * dt * (L(i, j) - L(j, i));
+    for (int i = 0; i < Dim; ++i)
+      for (int j = i; j < Dim; ++j)
+        for (int k = 0; k < Dim; ++k)
+          r[symmetric_index(i, j)] += w(i, k) * sigma(k, j) - sigma(i, k) * w(k, j);
+  }
+  return r;
+}
+
+/// V <- V det(I + dt L): exact for a velocity gradient that acts on the configuration at the start of the
+/// step.
+struct DeterminantVolume {
+  template <int Dim, class T>
+  KOKKOS_FUNCTION T operator()(T volume, const Matrix<Dim, T>& L, T dt) const {
+    auto F = Matrix<Dim, T>::identity();
+    for (int i = 0; i < Dim; ++i)
+      for (int j = 0; j < Dim; ++j) F(i, j) += dt * L(i, j);
+    return volume * determinant(F);
+  }
+};
+
+/// V <- V exp(dt tr L): exact for a velocity gradient that is constant over the step; consistent with a
+/// stress that is integrated in rate form, whatever the number of steps.
+struct ExponentialVolume {
+  template <int Dim, class T>
+  KOKKOS_FUNCTION T operator()(T volume, const Matrix<Dim, T>& L, T dt) const {
+    return volume * math::exp(dt * trace(L));
+  }
+};
+
+}  // namespace vsb

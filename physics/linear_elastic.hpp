@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Isotropic linear elasticity in rate form (hypoelastic, Jaumann rate):
+///   sigma <- sigma + dt (w sigma - sigma w) + lambda tr(de) I + 2 mu de.
+#pragma once
+
+#include <sstream>
+#include <stdexcept>
+#include <vsb/physics/kinematics.hpp>
+
+namespace vsb {
+
+template <class Real>
+struct LinearElastic {
+  Real lambda;         ///< Lame's first parameter, Pa
+  Real shear_modulus;  ///< Pa
+
+  /// Throws std::invalid_argument unless E > 0 Pa and -1 < nu < 1/2.
+  static LinearElastic from_young(double youngs_modulus, double poisson_ratio) {
+    const double E = youngs_modulus, nu = poisson_ratio;
+    if (!(E > 0) || !(nu > -1 && nu < 0.5)) {
+      std::ostringstream text;
+      text << "vsb::LinearElastic: Young's modulus " << E << " Pa and Poisson ratio " << nu
+           << "; allowed are E > 0 and -1 < nu < 0.5";
+      throw std::invalid_argument(text.str());
+    }
+    return {static_cast<Real>(E * nu / ((1 + nu) * (1 - 2 * nu))), static_cast<Real>(E / (2 * (1 + nu)))};
+  }
+
+  /// M of Eq. (29), Pa: stiffness in uniaxial strain.
+  KOKKOS_FUNCTION Real constrained_modulus() const { return lambda + 2 * shear_modulus; }
+
+  /// The stress at the end of a step of length dt with velocity gradient L.
+  template <int Dim, class T>
+  KOKKOS_FUNCTION SymmetricTensor<Dim, T> advance(const SymmetricTensor<Dim, T>& sigma,
+                                                  const Matrix<Dim, T>& L, T dt) const {
+    const auto de = strain_increment(L, dt);
+    auto s = sigma + jaumann_rotation(sigma, L, dt) + T(2 * shear_modulus) * de;
+    const T isotropic = T(lambda) * dt * trace(L);
+    for (int i = 0; i < 3; ++i) s[i] += isotropic;
+    return s;
+  }
+};
+
+}  // namespace vsb

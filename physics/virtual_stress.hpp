@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Virtual stress fields sbar with their divergence fbar = div sbar (Eq. 16). A traction t on a boundary of
+/// normal n is replaced by any field with sbar . n = t there (Eq. 14); a pressure p, positive in compression,
+/// is sbar = -p I.
+///
+/// What a kernel asks of a field: `loaded` (whether there is anything to add), and at(x, mask), the sum over
+/// the tractions in the mask of their fields at x. A kernel calls it where a node's mask differs from that of
+/// the node before it, so that a field that differs from surface to surface switches node by node.
+#pragma once
+
+#include <vsb/views/masks.hpp>
+#include <vsb/views/tensor.hpp>
+
+namespace vsb {
+
+/// A virtual stress and its divergence at a point.
+template <int Dim, class T>
+struct VirtualStressValue {
+  SymmetricTensor<Dim, T> stress;  ///< sbar, Pa, tension positive
+  Vector<Dim, T> divergence;       ///< fbar, N/m^3
+
+  KOKKOS_FUNCTION static VirtualStressValue zero() {
+    return {SymmetricTensor<Dim, T>::zero(), Vector<Dim, T>::zero()};
+  }
+};
+
+/// No traction anywhere; kernels skip the virtual stress at compile time.
+struct NoVirtualStress {
+  static constexpr bool loaded = false;
+  template <int Dim, class T>
+  KOKKOS_FUNCTION VirtualStressValue<Dim, T> at(const Vector<Dim, T>&, TractionMask) const {
+    return VirtualStressValue<Dim, T>::zero();
+  }
+};
+
+/// The virtual stress of a pressure p in Pa, positive in compression: sbar = -p I.
+template <int Dim, class T>
+KOKKOS_INLINE_FUNCTION SymmetricTensor<Dim, T> pressure_stress(T p) {
+  return SymmetricTensor<Dim, T>::isotropic(-p);
+}
+
+/// One uniform tensor per traction; tractions add up where their surfaces overlap.
+template <int Dim, class Real>
+struct UniformVirtualStress {
+  static constexpr bool loaded = true;
+  static constexpr int capacity = 8;
+  SymmetricTensor<Dim, Real> stress[capacity];  ///< sbar of traction k at this time, Pa, tension positive
+  int count = 0;
+
+  KOKKOS_FUNCTION VirtualStressValue<Dim, Real> at(const Vector<Dim, Real>&, TractionMask mask) const {
+    auto value = VirtualStressValue<Dim, Real>::zero();
+    for (int k = 0; k < count; ++k)
+      if (mask >> k & 1u) value.stress += stress[k];
+    return value;
+  }
+};
+
+}  // namespace vsb

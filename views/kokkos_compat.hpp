@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// The one place that knows how Kokkos differs between 3.4 and 5.x.
+#pragma once
+
+#include <Kokkos_Core.hpp>
+#include <string>
+
+static_assert(KOKKOS_VERSION >= 30400, "vsb needs Kokkos 3.4 or newer");
+
+namespace vsb {
+
+/// Mathematical functions callable on host and device. They live in Kokkos::Experimental before Kokkos 3.7.
+namespace math {
+#if KOKKOS_VERSION >= 30700
+using Kokkos::abs;
+using Kokkos::atan2;
+using Kokkos::cos;
+using Kokkos::exp;
+using Kokkos::expm1;
+using Kokkos::floor;
+using Kokkos::isfinite;
+using Kokkos::log;
+using Kokkos::log1p;
+using Kokkos::sin;
+using Kokkos::sqrt;
+#else
+using Kokkos::Experimental::atan2;
+using Kokkos::Experimental::cos;
+using Kokkos::Experimental::exp;
+using Kokkos::Experimental::expm1;
+using Kokkos::Experimental::floor;
+using Kokkos::Experimental::isfinite;
+using Kokkos::Experimental::log;
+using Kokkos::Experimental::log1p;
+using Kokkos::Experimental::sin;
+using Kokkos::Experimental::sqrt;
+
+template <class T>
+KOKKOS_INLINE_FUNCTION T abs(T x) {
+  return x < T(0) ? -x : x;
+}
+
+#endif
+
+template <class T>
+KOKKOS_INLINE_FUNCTION T min(T a, T b) {
+  return b < a ? b : a;
+}
+
+template <class T>
+KOKKOS_INLINE_FUNCTION T max(T a, T b) {
+  return a < b ? b : a;
+}
+}  // namespace math
+
+/// A named region in Kokkos Tools for the lifetime of the object (Kokkos has its own from 4.1 on).
+class ProfilingRegion {
+ public:
+  explicit ProfilingRegion(const std::string& label) { Kokkos::Profiling::pushRegion(label); }
+  ~ProfilingRegion() { Kokkos::Profiling::popRegion(); }
+  ProfilingRegion(const ProfilingRegion&) = delete;
+  ProfilingRegion& operator=(const ProfilingRegion&) = delete;
+};
+
+}  // namespace vsb

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// What a node of the background grid carries.
+#pragma once
+
+#include <vsb/views/masks.hpp>
+#include <vsb/views/tensor.hpp>
+
+namespace vsb {
+
+/// Nodal fields, one row per node. What particles scatter together lies together, a row being
+/// (mass, momentum, force); the accessors give the names.
+template <int Dim, class Real, class Device>
+struct Nodes {
+  static constexpr int dimension = Dim;
+  /// Columns of `sums`.
+  static constexpr int sum_columns = 1 + 2 * Dim;
+  using real = Real;
+  using device = Device;
+  using Fields = Kokkos::View<Real**, Kokkos::LayoutRight, Device>;
+
+  Fields sums;               ///< [node][1 + 2 Dim]: mass in kg, momentum in kg m/s, force in N
+  Fields acceleration;       ///< [node][Dim], m/s^2; zero in prescribed components
+  Fields velocity;           ///< [node][Dim], m/s; at the end of the step, before the re-map
+  Fields remapped_velocity;  ///< [node][Dim], m/s; the re-mapped velocity of MUSL (during the re-map: its
+                             ///< momentum)
+  Kokkos::View<ComponentMask*, Device> fixed_components;  ///< [node]: prescribed velocity components
+
+  KOKKOS_FUNCTION int count() const { return static_cast<int>(sums.extent(0)); }
+  KOKKOS_FUNCTION Real& mass(int node) const { return sums(node, 0); }
+  KOKKOS_FUNCTION Real& momentum(int node, int i) const { return sums(node, 1 + i); }
+  KOKKOS_FUNCTION Real& force(int node, int i) const { return sums(node, 1 + Dim + i); }
+};
+
+/// [node]: the tractions that act at a node; zero for nodes outside N1 (see kernels/mark_boundary_nodes.hpp).
+template <class Device>
+using BoundaryNodes = Kokkos::View<TractionMask*, Device>;
+
+/// Allocates zero-filled nodal fields without prescribed components.
+template <int Dim, class Real, class Device>
+Nodes<Dim, Real, Device> allocate_nodes(int n) {
+  using Fields = typename Nodes<Dim, Real, Device>::Fields;
+  const auto rows = static_cast<size_t>(n);
+  Nodes<Dim, Real, Device> nodes;
+  nodes.sums = Fields("vsb::node_sums", rows, Nodes<Dim, Real, Device>::sum_columns);
+  nodes.acceleration = Fields("vsb::node_acceleration", rows, Dim);
+  nodes.velocity = Fields("vsb::node_velocity", rows, Dim);
+  nodes.remapped_velocity = Fields("vsb::node_remapped_velocity", rows, Dim);
+  nodes.fixed_components = decltype(nodes.fixed_components)("vsb::node_fixed_components", rows);
+  return nodes;
+}
+
+}  // namespace vsb

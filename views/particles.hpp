@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// What a particle carries, as a structure of arrays.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vsb/views/tensor.hpp>
+
+namespace vsb {
+
+/// A bundle of Views, one row per particle. The Views are strided, so that they wrap arrays of any layout:
+/// assign to them Views of one's own arrays (see make_unmanaged_field), or take them from allocate_particles.
+/// Copying the bundle copies no data.
+template <int Dim, class Real, class Device>
+struct Particles {
+  static constexpr int dimension = Dim;
+  static constexpr int stress_size = symmetric_components(Dim);
+  using real = Real;
+  using device = Device;
+  using Scalars = Kokkos::View<Real*, Kokkos::LayoutStride, Device>;
+  using Fields = Kokkos::View<Real**, Kokkos::LayoutStride, Device>;
+
+  Fields position;       ///< [particle][Dim], m
+  Fields velocity;       ///< [particle][Dim], m/s
+  Scalars mass;          ///< [particle], kg (kg/m^2 in 1D, kg/m in 2D: per unit of the directions left out)
+  Scalars volume;        ///< [particle], m^3 (m in 1D, m^2 in 2D)
+  Fields cauchy_stress;  ///< [particle][3, 4 or 6], Pa, tension positive; order xx yy zz xy yz xz
+
+  KOKKOS_FUNCTION int count() const { return static_cast<int>(mass.extent(0)); }
+
+  template <int N>
+  KOKKOS_FUNCTION static Vector<N, Real> row(const Fields& field, int p) {
+    Vector<N, Real> v;
+    for (int i = 0; i < N; ++i) v[i] = field(p, i);
+    return v;
+  }
+  KOKKOS_FUNCTION Vector<Dim, Real> position_of(int p) const { return row<Dim>(position, p); }
+  KOKKOS_FUNCTION Vector<Dim, Real> velocity_of(int p) const { return row<Dim>(velocity, p); }
+  KOKKOS_FUNCTION SymmetricTensor<Dim, Real> stress_of(int p) const {
+    SymmetricTensor<Dim, Real> s;
+    for (int c = 0; c < stress_size; ++c) s[c] = cauchy_stress(p, c);
+    return s;
+  }
+
+  /// Throws std::invalid_argument, naming the field, unless all fields have the shapes given above.
+  void check() const {
+    const auto expect = [&](const char* name, size_t rows, size_t columns, size_t wanted) {
+      if (rows != mass.extent(0) || columns != wanted)
+        throw std::invalid_argument(std::string("vsb::Particles: ") + name + " is " + std::to_string(rows) +
+                                    " x " + std::to_string(columns) + ", expected " +
+                                    std::to_string(mass.extent(0)) + " x " + std::to_string(wanted));
+    };
+    expect("position", position.extent(0), position.extent(1), Dim);
+    expect("velocity", velocity.extent(0), velocity.extent(1), Dim);
+    expect("volume", volume.extent(0), 1, 1);
+    expect("cauchy_stress", cauchy_stress.extent(0), cauchy_stress.extent(1), stress_size);
+  }
+};
+
+/// Rows to allocate for n particles: an odd number of cache lines, so that no two of the first 64 columns
+/// start at the same place of a 4096-byte page. Columns that do evict one another from the first-level cache.
+template <class Real>
+int padded_rows(int n) {
+  constexpr int line = 64 / static_cast<int>(sizeof(Real));
+  const int lines = (n + line - 1) / line;
+  return (lines | 1) * line;
+}
+
+/// Particles that own their memory: one block, a column per component. The block makes copies to and from a
+/// device (or a file) a single transfer.
+template <int Dim, class Real, class Device>
+struct ParticleBlock {
+  using Block = Kokkos::View<Real**, Kokkos::LayoutLeft, Device>;
+  Block block;  ///< [padded particle][columns]
+  Particles<Dim, Real, Device> particles;
+
+  ParticleBlock() = default;
+  /// Wraps a block that has the columns position, velocity, mass, volume, stress, for n particles.
+  ParticleBlock(Block b, int n) : block(std::move(b)) {
+    const auto rows = std::make_pair(0, n);
+    int column = 0;
+    const auto fields = [&](int width) {
+      column += width;
+      return Kokkos::subview(block, rows, std::make_pair(column - width, column));
+    };
+    particles.position = fields(Dim);
+    particles.velocity = fields(Dim);
+    particles.mass = Kokkos::subview(block, rows, column++);
+    particles.volume = Kokkos::subview(block, rows, column++);
+    particles.cauchy_stress = fields(Particles<Dim, Real, Device>::stress_size);
+  }
+  static constexpr int columns() { return 2 * Dim + 2 + Particles<Dim, Real, Device>::stress_size; }
+};
+
+/// Allocates zero-filled particles.
+template <int Dim, class Real, class Device>
+ParticleBlock<Dim, Real, Device> allocate_particles(int n) {
+  using Result = ParticleBlock<Dim, Real, Device>;
+  return Result(
+      typename Result::Block("vsb::particles", static_cast<size_t>(padded_rows<Real>(n)), Result::columns()),
+      n);
+}
+
+/// A copy in host memory (the same memory where the device is the host).
+template <int Dim, class Real, class Device>
+ParticleBlock<Dim, Real, Kokkos::HostSpace> host_copy(const ParticleBlock<Dim, Real, Device>& source) {
+  return {Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), source.block, "vsb::particles on host"),
+          source.particles.count()};
+}
+
+/// Wraps a caller's array as a field: entry (p, c) is at pointer[p * row_stride + c * column_stride].
+template <int Dim, class Real, class Device>
+typename Particles<Dim, Real, Device>::Fields make_unmanaged_field(Real* pointer, int particles, int columns,
+                                                                   int row_stride, int column_stride) {
+  return {pointer, Kokkos::LayoutStride(static_cast<size_t>(particles), static_cast<size_t>(row_stride),
+                                        static_cast<size_t>(columns), static_cast<size_t>(column_stride))};
+}
+
+}  // namespace vsb
