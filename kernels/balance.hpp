@@ -65,7 +65,6 @@ struct ParticleEnergy {
 template <class Exec, class Basis, class Field, int Dim, class Real, class Device>
 Balance<Dim> balance(const Exec& exec, State<Dim, Real, Device>& s, const std::vector<Body<Real>>& bodies,
                      const Basis& basis, const Field& virtual_stress, const StepOptions<Dim, Real>& options) {
-  update_occupancy(exec, s.particles, s.occupancy, basis);
   auto bare = s.nodes;
   bare.sums = typename Nodes<Dim, Real, Device>::Fields("vsb::bare_sums", s.nodes.sums.extent(0),
                                                         Nodes<Dim, Real, Device>::sum_columns);

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "files/hdf5_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <hdf5.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+
+namespace vsb::app {
+
+namespace {
+
+/// An HDF5 identifier that closes itself.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*close)(hid_t), const std::string& what) : id_(id), close_(close) {
+    if (id < 0) throw FileError(what);
+  }
+  ~Handle() { close_(id_); }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  operator hid_t() const { return id_; }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+void check(herr_t status, const std::string& what) {
+  if (status < 0) throw FileError(what);
+}
+
+hid_t memory_type(double) {
+  return H5T_NATIVE_DOUBLE;
+}
+hid_t memory_type(std::int64_t) {
+  return H5T_NATIVE_INT64;
+}
+hid_t memory_type(unsigned char) {
+  return H5T_NATIVE_UCHAR;
+}
+
+template <class T>
+void write_attribute(hid_t file, const std::string& path, const std::string& group, const std::string& name,
+                     const std::vector<T>& values) {
+  const std::string what = fmt::format("{}: cannot write attribute {} of {}", path, name, group);
+  const hsize_t size = values.size();
+  const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose, what);
+  const Handle attribute(H5Acreate_by_name(file, group.c_str(), name.c_str(), memory_type(T{}), space,
+                                           H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose, what);
+  check(H5Awrite(attribute, memory_type(T{}), values.data()), what);
+}
+
+/// Makes a file's content, or a directory's entries, survive a crash.
+void flush_to_disk(const std::string& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY);
+  if (descriptor < 0 || ::fsync(descriptor) != 0) {
+    const int error = errno;
+    if (descriptor >= 0) ::close(descriptor);
+    throw FileError(fmt::format("{}: {}", path, std::strerror(error)));
+  }
+  ::close(descriptor);
+}
+
+void put_in_place(const std::string& temporary, const std::string& path) {
+  flush_to_disk(temporary);
+  std::error_code error;
+  std::filesystem::rename(temporary, path, error);
+  if (error) throw FileError(fmt::format("{}: {}", path, error.message()));
+  const auto directory = std::filesystem::path(path).parent_path();
+  flush_to_disk(directory.empty() ? "." : directory.string());
+}
+
+}  // namespace
+
+Hdf5Writer::Hdf5Writer(std::string path) : path_(std::move(path)), temporary_(path_ + ".part") {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  file_ = H5Fcreate(temporary_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  if (file_ < 0) throw FileError(fmt::format("{}: cannot create the file", temporary_));
+}
+
+Hdf5Writer::~Hdf5Writer() {
+  if (file_ < 0) return;
+  H5Fclose(file_);
+  std::remove(temporary_.c_str());
+}
+
+void Hdf5Writer::group(const std::string& name) {
+  const std::string what = fmt::format("{}: cannot create group {}", path_, name);
+  Handle(H5Gcreate2(file_, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, what);
+}
+
+template <class T>
+void Hdf5Writer::dataset(const std::string& name, const std::vector<T>& values,
+                         const std::vector<size_t>& shape) {
+  const std::string what = fmt::format("{}: cannot write {}", path_, name);
+  const std::vector<hsize_t> extent(shape.begin(), shape.end());
+  size_t size = 1;
+  for (const size_t n : shape) size *= n;
+  if (size != values.size())
+    throw FileError(fmt::format("{}: {} has {} values for a shape of {}", path_, name, values.size(), size));
+  const int rank = static_cast<int>(extent.size());
+  const Handle space(H5Screate_simple(rank, extent.data(), nullptr), H5Sclose, what);
+  const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, what);
+  check(H5Pset_obj_track_times(properties, false), what);  // the same data makes the same file
+  if (values.size() > 64) {  // chunks of at most about 64k values; tiny sets stay contiguous
+    std::vector<hsize_t> chunk(extent);
+    for (size_t i = 0; i < chunk.size(); ++i) {
+      hsize_t rest = 1;
+      for (size_t j = i + 1; j < chunk.size(); ++j) rest *= extent[j];
+      chunk[i] = std::min(chunk[i], std::max<hsize_t>(1, 65536 / rest));
+    }
+    check(H5Pset_chunk(properties, rank, chunk.data()), what);
+    check(H5Pset_shuffle(properties), what);
+    check(H5Pset_deflate(properties, 4), what);
+    check(H5Pset_fletcher32(properties), what);
+  }
+  const Handle set(
+      H5Dcreate2(file_, name.c_str(), memory_type(T{}), space, H5P_DEFAULT, properties, H5P_DEFAULT),
+      H5Dclose, what);
+  check(H5Dwrite(set, memory_type(T{}), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), what);
+}
+template void Hdf5Writer::dataset(const std::string&, const std::vector<double>&, const std::vector<size_t>&);
+template void Hdf5Writer::dataset(const std::string&, const std::vector<std::int64_t>&,
+                                  const std::vector<size_t>&);
+template void Hdf5Writer::dataset(const std::string&, const std::vector<unsigned char>&,
+                                  const std::vector<size_t>&);
+
+void Hdf5Writer::attribute(const std::string& group, const std::string& name,
+                           const std::vector<std::int64_t>& values) {
+  write_attribute(file_, path_, group, name, values);
+}
+
+void Hdf5Writer::attribute(const std::string& group, const std::string& name,
+                           const std::vector<double>& values) {
+  write_attribute(file_, path_, group, name, values);
+}
+
+void Hdf5Writer::attribute(const std::string& group, const std::string& name, const std::string& text) {
+  const std::string what = fmt::format("{}: cannot write attribute {} of {}", path_, name, group);
+  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose, what);
+  check(H5Tset_size(type, std::max<size_t>(1, text.size())), what);
+  check(H5Tset_strpad(type, H5T_STR_NULLPAD), what);
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose, what);
+  const Handle attribute(H5Acreate_by_name(file_, group.c_str(), name.c_str(), type, space, H5P_DEFAULT,
+                                           H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose, what);
+  check(H5Awrite(attribute, type, text.c_str()), what);
+}
+
+void Hdf5Writer::commit() {
+  const herr_t status = H5Fclose(file_);
+  file_ = -1;
+  if (status < 0) {
+    std::remove(temporary_.c_str());
+    throw FileError(fmt::format("{}: cannot finish the file (is the disk full?)", path_));
+  }
+  put_in_place(temporary_, path_);
+}
+
+Hdf5Reader::Hdf5Reader(const std::string& path) : path_(path) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  file_ = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (file_ < 0) throw FileError(fmt::format("{}: cannot be opened as an HDF5 file", path));
+}
+
+Hdf5Reader::~Hdf5Reader() {
+  H5Fclose(file_);
+}
+
+std::vector<unsigned char> Hdf5Reader::bytes(const std::string& name) const {
+  const std::string what = fmt::format("{}: cannot read {}", path_, name);
+  const Handle set(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose, what);
+  const Handle space(H5Dget_space(set), H5Sclose, what);
+  const hssize_t size = H5Sget_simple_extent_npoints(space);
+  if (size < 0) throw FileError(what);
+  std::vector<unsigned char> values(static_cast<size_t>(size));
+  check(H5Dread(set, H5T_NATIVE_UCHAR, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), what);
+  return values;
+}
+
+std::vector<std::int64_t> Hdf5Reader::integers(const std::string& group, const std::string& attribute) const {
+  const std::string what = fmt::format("{}: cannot read attribute {} of {}", path_, attribute, group);
+  const Handle a(H5Aopen_by_name(file_, group.c_str(), attribute.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+                 what);
+  const Handle space(H5Aget_space(a), H5Sclose, what);
+  const hssize_t size = H5Sget_simple_extent_npoints(space);
+  if (size < 0 || size > 1024) throw FileError(what);
+  std::vector<std::int64_t> values(static_cast<size_t>(size));
+  check(H5Aread(a, H5T_NATIVE_INT64, values.data()), what);
+  return values;
+}
+
+std::string Hdf5Reader::text(const std::string& group, const std::string& attribute) const {
+  const std::string what = fmt::format("{}: cannot read attribute {} of {}", path_, attribute, group);
+  const Handle a(H5Aopen_by_name(file_, group.c_str(), attribute.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+                 what);
+  const Handle type(H5Aget_type(a), H5Tclose, what);
+  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0) throw FileError(what);
+  std::string value(H5Tget_size(type), '\0');
+  check(H5Aread(a, type, value.data()), what);
+  return value.substr(0, value.find('\0'));
+}
+
+void write_text_file(const std::string& path, const std::string& text) {
+  const std::string temporary = path + ".part";
+  {
+    std::ofstream out(temporary, std::ios::binary);
+    out << text;
+    out.close();
+    if (!out) {
+      std::remove(temporary.c_str());
+      throw FileError(fmt::format("{}: cannot be written", path));
+    }
+  }
+  put_in_place(temporary, path);
+}
+
+}  // namespace vsb::app

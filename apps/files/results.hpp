@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// What a run leaves behind: frames that ParaView opens, a checkpoint, and a summary.
+///   NAME_000123.hdf, NAME.hdf.series   particles, VTKHDF 1.0 (vertex cells); the index gives the times
+///   NAME_grid_000123.hdf, ...          nodal fields, VTKHDF image data, on request
+///   NAME.checkpoint                    the last complete state
+///   summary.json
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "run/comparison.hpp"
+#include "run/simulation.hpp"
+
+namespace vsb::app {
+
+class Results {
+ public:
+  /// Names the directory; nothing is touched yet.
+  Results(std::string directory, const Scene& scene);
+
+  /// Creates the directory and removes what an earlier run of this scene left there. A resumed run keeps the
+  /// frames up to the step it resumes from; any other starts with `resumed_step` -1. Throws FileError.
+  void begin(long long resumed_step);
+
+  /// `exact` adds the exact solution as fields exact_displacement and exact_cauchy_stress.
+  void write_frame(const Snapshot& snapshot, const ExactFields& exact);
+  void write_grid_frame(const GridSnapshot& grid, long long step, double time);
+  void write_checkpoint(const SavedState& saved);
+  /// The state to resume from; none where there is no checkpoint. Throws FileError for one that is damaged or
+  /// was written by another scene.
+  std::optional<SavedState> read_checkpoint() const;
+  void write_summary(const std::string& json);
+
+  const std::string& directory() const { return directory_; }
+
+ private:
+  struct Series {
+    std::string stem;
+    std::vector<std::pair<std::string, double>> frames;  ///< file name, time
+  };
+  std::string path(const std::string& name) const { return directory_ + "/" + name; }
+  void begin(Series& series, long long resumed_step);
+  void add_to_index(Series& series, const std::string& file, double time);
+
+  std::string directory_;
+  const Scene& scene_;
+  Series particles_, grid_;
+};
+
+}  // namespace vsb::app

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// A snapshot against an exact solution: the solution at the particles, and the error norms of Eqs.
+/// (30)-(33).
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "run/simulation.hpp"
+#include "scene/scene.hpp"
+
+namespace vsb::app {
+
+/// The exact solution at every particle; empty vectors where the solution does not say.
+struct ExactFields {
+  std::vector<double> displacement;   ///< [3 per particle], m
+  std::vector<double> cauchy_stress;  ///< [6 per particle], Pa; components the solution leaves open are zero
+};
+
+struct ComparisonResult {
+  std::vector<std::pair<std::string, double>> errors;  ///< name -> norm; none without a comparison
+  ExactFields exact;
+};
+
+/// Evaluates the scene's comparison at the particles' current positions (the column's at their initial ones).
+ComparisonResult compare_with_exact(const Scene& scene, const Snapshot& snapshot);
+
+}  // namespace vsb::app

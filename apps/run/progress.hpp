@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// How far a run is: one line that rewrites itself on a terminal, a line every ten seconds elsewhere.
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+namespace vsb::app {
+
+class Progress {
+ public:
+  Progress(bool quiet, int particles);
+
+  /// Whether it is time for another report.
+  bool due() const;
+  /// `step` steps are done, of which `made` in `seconds` of this program's life; `expected` is the step at
+  /// which the run will end, where one can tell.
+  void report(long long step, long long made, double seconds, std::optional<long long> expected,
+              double force_ratio);
+  /// Ends the line on a terminal.
+  void finish();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  bool quiet_, terminal_, open_line_ = false;
+  int particles_;
+  Clock::time_point last_;
+};
+
+}  // namespace vsb::app

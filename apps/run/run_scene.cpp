@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/run_scene.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <optional>
+
+#include "files/results.hpp"
+#include "run/progress.hpp"
+#include "run/summary.hpp"
+
+namespace vsb::app {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+volatile std::sig_atomic_t interrupt_requested = 0;
+
+/// Turns SIGINT and SIGTERM into a request to stop while it lives.
+class InterruptGuard {
+ public:
+  InterruptGuard() {
+    interrupt_requested = 0;
+    before_int_ = std::signal(SIGINT, on_signal);
+    before_term_ = std::signal(SIGTERM, on_signal);
+  }
+  ~InterruptGuard() {
+    std::signal(SIGINT, before_int_);
+    std::signal(SIGTERM, before_term_);
+  }
+  InterruptGuard(const InterruptGuard&) = delete;
+  InterruptGuard& operator=(const InterruptGuard&) = delete;
+
+ private:
+  static void on_signal(int) { interrupt_requested = 1; }
+  using Handler = void (*)(int);
+  Handler before_int_, before_term_;
+};
+
+constexpr long long health_interval = 100;  // steps between checks for a diverging run
+
+/// The first step after `step` at which something is due: a check, a frame, or the end.
+long long next_stop(const Scene& scene, long long step) {
+  const auto multiple = [&](long long interval) { return (step / interval + 1) * interval; };
+  long long stop = std::min(scene.time.steps, multiple(health_interval));
+  if (scene.output.every > 0) stop = std::min(stop, multiple(scene.output.every));
+  if (scene.time.until_static) stop = std::min(stop, multiple(scene.time.until_static->check_every));
+  return stop;
+}
+
+/// The time from which on all loads are constant, s.
+double loads_settled_at(const Scene& scene) {
+  double t = 0;
+  for (const auto& traction : scene.tractions) t = std::max(t, traction.time.settled_at());
+  return t;
+}
+
+bool is_static(const StaticCriterion& c, const BalanceReport& b) {
+  return b.force_ratio <= c.force_ratio && b.energy_ratio <= c.energy_ratio;
+}
+
+/// Foresees the step at which a run until static ends: the force ratio falls exponentially once the loads are
+/// constant.
+class StaticForecast {
+ public:
+  explicit StaticForecast(const StaticCriterion& criterion) : criterion_(criterion) {}
+
+  /// The force ratio at a step with constant loads.
+  void observe(long long step, double force_ratio) {
+    if (first_step_ < 0) {
+      first_step_ = step;
+      first_ratio_ = force_ratio;
+    }
+    last_step_ = step;
+    last_ratio_ = force_ratio;
+  }
+  std::optional<long long> end() const {
+    if (last_step_ <= first_step_ || !(last_ratio_ < first_ratio_)) return {};
+    const double decay = std::log(first_ratio_ / last_ratio_) / static_cast<double>(last_step_ - first_step_);
+    return last_step_ +
+           static_cast<long long>(std::max(0.0, std::log(last_ratio_ / criterion_.force_ratio) / decay));
+  }
+
+ private:
+  StaticCriterion criterion_;
+  long long first_step_ = -1, last_step_ = -1;
+  double first_ratio_ = 0, last_ratio_ = 0;
+};
+
+void write_frames(Results& results, const Scene& scene, Simulation& simulation) {
+  simulation.check_health();
+  const Snapshot snapshot = simulation.snapshot();
+  results.write_frame(snapshot, compare_with_exact(scene, snapshot).exact);
+  if (scene.output.grid) results.write_grid_frame(simulation.grid_snapshot(), snapshot.step, snapshot.time);
+}
+
+}  // namespace
+
+ExitCode run_scene(const Scene& scene, const RunOptions& options) {
+  const auto simulation = make_simulation(scene);
+  Results results(options.directory, scene);
+  long long resumed_step = -1;
+  if (options.resume) {
+    if (const auto saved = results.read_checkpoint()) {
+      simulation->restore(*saved);
+      resumed_step = saved->step;
+    }
+  }
+  results.begin(resumed_step);
+  if (!options.quiet) {
+    fmt::print("{}: {} particles, {} boundary nodes, dt {:.6g} s, {} {} steps, results in {}\n", scene.name,
+               simulation->particle_count(), simulation->boundary_nodes(), scene.time.dt,
+               scene.time.until_static ? "at most" : "exactly", scene.time.steps, options.directory);
+    if (resumed_step >= 0) fmt::print("resumed at step {}\n", resumed_step);
+  }
+  if (resumed_step < 0) write_frames(results, scene, *simulation);
+
+  const InterruptGuard guard;
+  Progress progress(options.quiet, simulation->particle_count());
+  StaticForecast forecast(scene.time.until_static.value_or(StaticCriterion{}));
+  const long long first_step = simulation->step();
+  const double settled = loads_settled_at(scene);
+  RunFigures figures;
+  auto last_checkpoint = Clock::now();
+  bool found_static = false;
+  while (simulation->step() < scene.time.steps && !found_static) {
+    const auto begin = Clock::now();
+    const long long stop = next_stop(scene, simulation->step());
+    while (simulation->step() < stop && !interrupt_requested)
+      simulation->advance(std::min<long long>(stop - simulation->step(),
+                                              std::max(1, 100'000 / simulation->particle_count())));
+    figures.seconds += seconds_since(begin);
+    const long long step = simulation->step();
+    if (step % health_interval == 0 || interrupt_requested) simulation->check_health();
+    if (interrupt_requested) {
+      progress.finish();
+      results.write_checkpoint(simulation->save());
+      fmt::print("interrupted at step {}; continue with --resume\n", step);
+      return exit_interrupted;
+    }
+    const auto& criterion = scene.time.until_static;
+    if (criterion && step % criterion->check_every == 0 &&
+        static_cast<double>(step) * scene.time.dt >= settled) {
+      const auto balance = simulation->balance();
+      found_static = is_static(*criterion, balance);
+      forecast.observe(step, balance.force_ratio);
+    }
+    if (scene.output.every > 0 && step % scene.output.every == 0) write_frames(results, scene, *simulation);
+    if (scene.output.checkpoint_minutes > 0 &&
+        seconds_since(last_checkpoint) > 60 * scene.output.checkpoint_minutes) {
+      simulation->check_health();
+      results.write_checkpoint(simulation->save());
+      last_checkpoint = Clock::now();
+    }
+    if (progress.due())
+      progress.report(step, step - first_step, figures.seconds, criterion ? forecast.end() : scene.time.steps,
+                      simulation->balance().force_ratio);
+  }
+  simulation->check_health();
+  const auto balance = simulation->balance();
+  progress.report(simulation->step(), simulation->step() - first_step, figures.seconds, simulation->step(),
+                  balance.force_ratio);
+  progress.finish();
+
+  if (scene.output.every == 0 || simulation->step() % scene.output.every != 0)
+    write_frames(results, scene, *simulation);
+  figures.steps = simulation->step();
+  figures.steps_timed = simulation->step() - first_step;
+  figures.found_static = found_static;
+  figures.balance = balance;
+  figures.state_hash = state_hash(simulation->save());
+  figures.errors = compare_with_exact(scene, simulation->snapshot()).errors;
+  figures.particles = simulation->particle_count();
+  figures.boundary_nodes = simulation->boundary_nodes();
+  figures.state_bytes = simulation->state_bytes();
+  results.write_summary(summary_json(scene, figures));
+  if (!options.quiet) print_report(scene, figures);
+  if (scene.time.until_static && !found_static)
+    fmt::print("note: not static after max_steps = {} (force ratio {:.2e}, energy ratio {:.2e})\n",
+               scene.time.steps, balance.force_ratio, balance.energy_ratio);
+  return exit_done;
+}
+
+void check_scene(const Scene& scene) {
+  const auto simulation = make_simulation(scene);
+  fmt::print("# {} particles, {} boundary nodes, {:.3g} MB of state\n", simulation->particle_count(),
+             simulation->boundary_nodes(), static_cast<double>(simulation->state_bytes()) / 1e6);
+  fmt::print("# dt = {:.6g} s (kappa {:.4g}), {} {} steps, loads constant from {:.6g} s on\n", scene.time.dt,
+             scene.time.kappa, scene.time.until_static ? "at most" : "exactly", scene.time.steps,
+             loads_settled_at(scene));
+  // The rate is measured: a few steps of the scene itself, the first one (which sorts) left out.
+  simulation->advance(1);
+  const auto begin = Clock::now();
+  long long made = 0;
+  do {
+    simulation->advance(1);
+    ++made;
+  } while (seconds_since(begin) < 0.2);
+  const double per_step = seconds_since(begin) / static_cast<double>(made);
+  fmt::print("# estimated time {:.3g} s ({:.3g} ns per particle and step)\n\n",
+             per_step * static_cast<double>(scene.time.steps), 1e9 * per_step / simulation->particle_count());
+  fmt::print("{}", scene.resolved);
+}
+
+}  // namespace vsb::app

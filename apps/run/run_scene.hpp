@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Runs a scene from start to end: the time loop, its checks, and what it writes.
+#pragma once
+
+#include <string>
+
+#include "scene/scene.hpp"
+
+namespace vsb::app {
+
+enum ExitCode {
+  exit_done = 0,
+  exit_internal = 1,
+  exit_input = 2,
+  exit_diverged = 3,
+  exit_files = 4,
+  exit_interrupted = 5
+};
+
+struct RunOptions {
+  std::string directory;  ///< where results go
+  bool quiet = false;
+  bool resume = false;  ///< continue from the directory's checkpoint, if there is one
+};
+
+/// Returns exit_done, or exit_interrupted after SIGINT or SIGTERM with a checkpoint written. Throws
+/// SetupError before anything is written, Diverged, FileError.
+ExitCode run_scene(const Scene& scene, const RunOptions& options);
+
+/// Prints the resolved scene and what a run of it would cost; writes no file. Throws SetupError.
+void check_scene(const Scene& scene);
+
+}  // namespace vsb::app

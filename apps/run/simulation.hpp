@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// A scene in motion: particles, grid and loads, advanced step by step. The interface hides dimension,
+/// precision and device; what goes in and out is host memory in double precision.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "scene/scene.hpp"
+
+namespace vsb::app {
+
+/// A scene that is well written but cannot be run as it stands.
+struct SetupError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// A run that has become meaningless; the text names step, time, particle and field.
+struct Diverged : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// The particles at one moment. Vectors have 3 components per particle, stresses 6 (xx yy zz xy yz xz).
+struct Snapshot {
+  long long step = 0;
+  double time = 0;  ///< s
+  std::vector<std::int64_t> id;
+  std::vector<double> initial_position;    ///< m
+  std::vector<double> position, velocity;  ///< m, m/s
+  std::vector<double> cauchy_stress;       ///< Pa, tension positive
+  std::vector<double> volume, mass;        ///< m^3, kg
+  std::vector<unsigned char> in_boundary;  ///< 1 where a particle contributes to a node with a traction
+
+  size_t count() const { return id.size(); }
+};
+
+/// The nodes at one moment, as of the last step made; nodes along x first.
+struct GridSnapshot {
+  std::vector<double> mass, velocity, force;
+  std::vector<unsigned char> boundary;  ///< 1 where a traction acts
+};
+
+/// How far from equilibrium; see kernels/balance.hpp.
+struct BalanceReport {
+  double force_ratio = 1, energy_ratio = 0;
+  Point net_force{};
+};
+
+/// The complete state of a run, bit by bit, for checkpoints.
+struct SavedState {
+  long long step = 0;
+  size_t bytes_per_number = 0;
+  std::vector<unsigned char> particles;  ///< raw columns, padding left out
+};
+
+class Simulation {
+ public:
+  virtual ~Simulation() = default;
+
+  virtual int particle_count() const = 0;
+  virtual long long step() const = 0;
+  virtual int boundary_nodes() const = 0;
+  /// Memory of particles, nodes and occupancy.
+  virtual size_t state_bytes() const = 0;
+
+  /// Makes `steps` steps. Throws Diverged when a particle leaves the grid.
+  virtual void advance(long long steps) = 0;
+  /// Throws Diverged when a field of a particle is not finite or a volume is not positive.
+  virtual void check_health() const = 0;
+  virtual BalanceReport balance() = 0;
+  virtual Snapshot snapshot() = 0;
+  virtual GridSnapshot grid_snapshot() const = 0;
+  virtual SavedState save() const = 0;
+  /// Throws SetupError where the saved state does not fit this scene.
+  virtual void restore(const SavedState& saved) = 0;
+};
+
+/// 64-bit FNV-1a of the saved particles, as 16 hexadecimal digits: equal for equal bits.
+std::string state_hash(const SavedState& saved);
+
+/// Particles the scene will have; needs no Kokkos. Throws SetupError.
+int count_particles(const Scene& scene);
+
+/// Places the particles, finds the boundary nodes and checks that every traction acts somewhere. Throws
+/// SetupError.
+std::unique_ptr<Simulation> make_simulation(const Scene& scene);
+
+}  // namespace vsb::app

@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// The simulation of a scene in a given dimension and precision, on the backend of this build.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstring>
+
+#include <vsb/kernels/balance.hpp>
+#include <vsb/kernels/flag_boundary_particles.hpp>
+#include <vsb/kernels/health.hpp>
+#include <vsb/physics/linear_basis.hpp>
+#include "run/place_particles.hpp"
+#include "run/simulation.hpp"
+
+namespace vsb::app {
+
+#if defined(VSB_BACKEND_CUDA)
+using ExecutionSpace = Kokkos::Cuda;
+#elif defined(VSB_BACKEND_OPENMP)
+using ExecutionSpace = Kokkos::OpenMP;
+#else
+using ExecutionSpace = Kokkos::Serial;
+#endif
+
+template <int Dim, class Real>
+class SimulationOf final : public Simulation {
+ public:
+  explicit SimulationOf(const Scene& scene)
+      : scene_(scene), placed_(place_particles(scene)), basis_{make_grid(scene)}, field_(make_field(scene)) {
+    block_ = allocate_particles<Dim, Real, Device>(static_cast<int>(placed_.position.size()));
+    fill_particles();
+    state_ = make_state(block_.particles, basis_);
+    fix_faces();
+    declare_tractions();
+    options_.dt = static_cast<Real>(scene.time.dt);
+    options_.damping = static_cast<Real>(scene.method.damping);
+    for (int i = 0; i < Dim; ++i)
+      options_.gravity[i] = static_cast<Real>(scene.gravity[static_cast<size_t>(i)]);
+    if (scene.method.volume_update == "exponential") options_.volume_update = ExponentialVolume{};
+    options_.scatter = scene.method.scatter == "atomic"       ? Scatter::atomic
+                       : scene.method.scatter == "duplicated" ? Scatter::duplicated
+                                                              : Scatter::gathered;
+    locate();
+    check_tractions();
+  }
+
+  int particle_count() const override { return state_.particles.count(); }
+  long long step() const override { return step_; }
+  int boundary_nodes() const override { return state_.occupancy.boundary_node_count; }
+
+  size_t state_bytes() const override {
+    const auto& o = state_.occupancy;
+    const auto& n = state_.nodes;
+    const auto bytes = [](const auto&... views) { return (... + (views.span() * sizeof(*views.data()))); };
+    return bytes(block_.block, n.sums, n.acceleration, n.velocity, n.remapped_velocity, n.fixed_components,
+                 o.bins.bin, o.bins.order, o.bins.offset, o.bins.cursor, o.bins.slot, o.bins.occupied,
+                 o.cells.occupied, o.cells.exterior, o.cells.boundary, o.tractions, o.boundary,
+                 state_.sums_workspace.bin_sums, state_.remap_workspace.bin_sums) +
+           placed_.position.size() * sizeof(placed_.position[0]);
+  }
+
+  void advance(long long steps) override {
+    for (long long n = 0; n < steps; ++n) {
+      set_loads(step_ + 1);
+      const int lost = scene_.tractions.empty()
+                           ? vsb::step(exec_, state_, bodies_, basis_, NoVirtualStress{}, options_)
+                           : vsb::step(exec_, state_, bodies_, basis_, field_, options_);
+      if (lost >= 0) throw_lost(lost);
+      ++step_;
+    }
+    exec_.fence();
+  }
+
+  void check_health() const override {
+    const auto bad = find_invalid(exec_, state_.particles);
+    if (bad.particle < 0) return;
+    static const char* names[] = {"position", "velocity", "cauchy_stress", "volume"};
+    static const char* faults[] = {"is not finite", "is not finite", "is not finite",
+                                   "is not positive (J <= 0)"};
+    const auto f = static_cast<size_t>(bad.field);
+    throw Diverged(fmt::format("at step {}, time {:.6g} s: {} of particle {} {}", step_, time(), names[f],
+                               bad.particle, faults[f]));
+  }
+
+  BalanceReport balance() override {
+    set_loads(step_);
+    locate();
+    const auto b = vsb::balance(exec_, state_, bodies_, basis_, field_, options_);
+    BalanceReport report;
+    report.force_ratio = b.force_ratio();
+    report.energy_ratio = b.strain_energy > 0 ? b.kinetic_energy / b.strain_energy : 1.0;
+    for (int i = 0; i < Dim; ++i) report.net_force[static_cast<size_t>(i)] = b.net_force[i];
+    return report;
+  }
+
+  Snapshot snapshot() override {
+    const auto host_block = host_copy(block_);
+    const auto& p = host_block.particles;
+    const auto n = static_cast<size_t>(p.count());
+    const Kokkos::View<unsigned char*, Device> flag("vsb::boundary_particles", n);
+    locate();
+    flag_boundary_particles(exec_, state_.particles, state_.occupancy.boundary, basis_, flag);
+    exec_.fence();
+    const auto host_flag =
+        Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), flag, "vsb::flags on host");
+    Snapshot s;
+    s.step = step_;
+    s.time = time();
+    s.id.resize(n);
+    s.in_boundary.assign(host_flag.data(), host_flag.data() + n);
+    for (auto* field : {&s.position, &s.initial_position, &s.velocity}) field->assign(3 * n, 0.0);
+    s.cauchy_stress.assign(6 * n, 0.0);
+    s.volume.resize(n);
+    s.mass.resize(n);
+    for (size_t i = 0; i < n; ++i) {
+      s.id[i] = static_cast<std::int64_t>(i);
+      for (size_t d = 0; d < Dim; ++d) {
+        s.position[3 * i + d] = p.position(i, d);
+        s.initial_position[3 * i + d] = static_cast<Real>(placed_.position[i][d]);
+        s.velocity[3 * i + d] = p.velocity(i, d);
+      }
+      for (size_t c = 0; c < SymmetricTensor<Dim, Real>::size; ++c)
+        s.cauchy_stress[6 * i + c] = p.cauchy_stress(i, c);
+      s.volume[i] = p.volume(i);
+      s.mass[i] = p.mass(i);
+    }
+    return s;
+  }
+
+  GridSnapshot grid_snapshot() const override {
+    const auto sums =
+        Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.nodes.sums, "vsb::sums on host");
+    const auto velocity = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.nodes.velocity,
+                                                              "vsb::velocity on host");
+    const auto boundary = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.occupancy.boundary,
+                                                              "vsb::boundary on host");
+    const auto n = sums.extent(0);
+    GridSnapshot g;
+    g.mass.resize(n);
+    g.boundary.resize(n);
+    g.velocity.assign(3 * n, 0.0);
+    g.force.assign(3 * n, 0.0);
+    for (size_t i = 0; i < n; ++i) {
+      g.mass[i] = sums(i, 0);
+      g.boundary[i] = boundary(i) != 0;
+      for (size_t d = 0; d < Dim; ++d) {
+        g.velocity[3 * i + d] = velocity(i, d);
+        g.force[3 * i + d] = sums(i, 1 + Dim + d);
+      }
+    }
+    return g;
+  }
+
+  SavedState save() const override {
+    const auto host = host_copy(block_).block;
+    const size_t n = placed_.position.size(), column_bytes = n * sizeof(Real);
+    SavedState saved{step_, sizeof(Real), std::vector<unsigned char>(host.extent(1) * column_bytes)};
+    for (size_t c = 0; c < host.extent(1); ++c)
+      std::memcpy(saved.particles.data() + c * column_bytes, &host(0, c), column_bytes);
+    return saved;
+  }
+
+  void restore(const SavedState& saved) override {
+    auto host = host_copy(block_).block;
+    const size_t n = placed_.position.size(), column_bytes = n * sizeof(Real);
+    if (saved.bytes_per_number != sizeof(Real) || saved.particles.size() != host.extent(1) * column_bytes)
+      throw SetupError("the checkpoint belongs to another scene: its particles do not fit this one's");
+    for (size_t c = 0; c < host.extent(1); ++c)
+      std::memcpy(&host(0, c), saved.particles.data() + c * column_bytes, column_bytes);
+    Kokkos::deep_copy(block_.block, host);
+    step_ = saved.step;
+    if (update_occupancy(exec_, state_.particles, state_.occupancy, basis_) >= 0)
+      throw SetupError("the checkpoint belongs to another scene: it has particles outside this one's grid");
+  }
+
+ private:
+  using Device = ExecutionSpace::device_type;
+  using Basis = LinearBasis<Dim, Real>;
+  using Field = UniformVirtualStress<Dim, Real>;
+  static_assert(max_tractions == Field::capacity,
+                "a scene may declare as many tractions as the kernels can take");
+
+  static UniformGrid<Dim, Real> make_grid(const Scene& scene) {
+    Vector<Dim, Real> lower, spacing;
+    Vector<Dim, int> cells;
+    for (int i = 0; i < Dim; ++i) {
+      lower[i] = static_cast<Real>(scene.grid.lower[static_cast<size_t>(i)]);
+      spacing[i] = static_cast<Real>(scene.grid.spacing[static_cast<size_t>(i)]);
+      cells[i] = scene.grid.cells[static_cast<size_t>(i)];
+    }
+    return {lower, spacing, cells};
+  }
+
+  static Field make_field(const Scene& scene) {
+    Field field{};
+    field.count = static_cast<int>(scene.tractions.size());
+    return field;
+  }
+
+  double time() const { return static_cast<double>(step_) * scene_.time.dt; }
+
+  /// The virtual stress of every traction at the end of a step.
+  void set_loads(long long step) {
+    const double t = static_cast<double>(step) * scene_.time.dt;
+    for (size_t k = 0; k < scene_.tractions.size(); ++k) {
+      const auto& traction = scene_.tractions[k];
+      const double factor = traction.time(t);
+      for (size_t c = 0; c < SymmetricTensor<Dim, Real>::size; ++c)
+        field_.stress[k][static_cast<int>(c)] = static_cast<Real>(factor * traction.virtual_stress[c]);
+    }
+  }
+
+  void fill_particles() {
+    const auto host = host_copy(block_);
+    const auto& p = host.particles;
+    for (size_t b = 0; b < scene_.bodies.size(); ++b) {
+      const auto& body = scene_.bodies[b];
+      const auto range = placed_.bodies[b];
+      for (int n = range.first; n < range.last; ++n) {
+        const auto i = static_cast<size_t>(n);
+        const Point& x = placed_.position[i];
+        const auto stress = body.stress.at(x);
+        const auto velocity = body.velocity.at(x);
+        for (size_t d = 0; d < Dim; ++d) {
+          p.position(i, d) = static_cast<Real>(x[d]);
+          p.velocity(i, d) = static_cast<Real>(velocity[d]);
+        }
+        for (size_t c = 0; c < SymmetricTensor<Dim, Real>::size; ++c)
+          p.cauchy_stress(i, c) = static_cast<Real>(stress[c]);
+        p.volume(i) = static_cast<Real>(placed_.volume[i]);
+        p.mass(i) = static_cast<Real>(body.density * placed_.volume[i]);
+      }
+      bodies_.push_back(
+          {range.first, range.last,
+           LinearElastic<Real>::from_young(body.material.youngs_modulus, body.material.poisson_ratio)});
+    }
+    Kokkos::deep_copy(block_.block, host.block);
+  }
+
+  void fix_faces() {
+    const auto mask = Kokkos::create_mirror_view(state_.nodes.fixed_components);
+    for (int node = 0; node < basis_.node_count(); ++node) {
+      const auto ijk = basis_.grid.node_coordinates(node);
+      ComponentMask fixed = 0;
+      for (int i = 0; i < Dim; ++i) {
+        const auto& faces = scene_.faces.fixed[static_cast<size_t>(i)];
+        if (ijk[i] == 0) fixed = static_cast<ComponentMask>(fixed | faces[0]);
+        if (ijk[i] == basis_.grid.cells[i]) fixed = static_cast<ComponentMask>(fixed | faces[1]);
+      }
+      mask(node) = fixed;
+    }
+    Kokkos::deep_copy(state_.nodes.fixed_components, mask);
+  }
+
+  void declare_tractions() {
+    const auto mask = Kokkos::create_mirror_view(state_.occupancy.tractions);
+    for (int node = 0; node < basis_.node_count(); ++node) {
+      const auto ijk = basis_.grid.node_coordinates(node);
+      Point x{};
+      for (size_t i = 0; i < Dim; ++i)
+        x[i] = scene_.grid.lower[i] + static_cast<double>(ijk[static_cast<int>(i)]) * scene_.grid.spacing[i];
+      TractionMask declared = 0;
+      for (size_t k = 0; k < scene_.tractions.size(); ++k)
+        if (scene_.tractions[k].surface(x)) declared |= TractionMask(1) << k;
+      mask(node) = declared;
+    }
+    Kokkos::deep_copy(state_.occupancy.tractions, mask);
+  }
+
+  /// Every traction must have boundary nodes, and the body must not touch an open face of the grid where one
+  /// is declared: there are no void cells beyond a face, so part of the load would be missing without a word.
+  void check_tractions() const {
+    if (scene_.tractions.empty()) return;
+    const auto boundary = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.occupancy.boundary,
+                                                              "vsb::boundary on host");
+    const auto declared = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.occupancy.tractions,
+                                                              "vsb::declared on host");
+    TractionMask acting = 0;
+    for (size_t node = 0; node < boundary.extent(0); ++node) acting |= boundary(node);
+    for (size_t k = 0; k < scene_.tractions.size(); ++k)
+      if (!(acting >> k & 1u))
+        throw SetupError(
+            fmt::format("traction '{}' finds no boundary node, so it would load nothing. A boundary node "
+                        "belongs to a cell without "
+                        "particles or to one that touches such a cell; leave at least one empty cell beyond "
+                        "the loaded boundary "
+                        "(a smaller grid spacing, or a larger grid), and check the traction's 'surface'",
+                        scene_.tractions[k].name));
+    for (size_t p = 0; p < placed_.position.size(); ++p) {
+      Vector<Dim, Real> x;
+      for (int i = 0; i < Dim; ++i) x[i] = static_cast<Real>(placed_.position[p][static_cast<size_t>(i)]);
+      const auto shape = basis_.shape(x);
+      for (int a = 0; a < Basis::support; ++a) {
+        const auto ijk = basis_.grid.node_coordinates(shape.node[a]);
+        if (declared(static_cast<size_t>(shape.node[a])) == 0) continue;
+        for (int i = 0; i < Dim; ++i) {
+          const auto& faces = scene_.faces.fixed[static_cast<size_t>(i)];
+          const bool lower = ijk[i] == 0 && faces[0] == 0,
+                     upper = ijk[i] == basis_.grid.cells[i] && faces[1] == 0;
+          if (lower || upper)
+            throw SetupError(fmt::format(
+                "a body reaches the open face {}_{} of the grid, where a traction is declared: leave at "
+                "least one empty "
+                "cell between them, or give the face a condition, or the traction another 'surface'",
+                "xyz"[i], lower ? "min" : "max"));
+        }
+      }
+    }
+  }
+
+  void locate() {
+    const int lost = update_occupancy(exec_, state_.particles, state_.occupancy, basis_);
+    if (lost >= 0) throw_lost(lost);
+  }
+
+  [[noreturn]] void throw_lost(int particle) const {
+    check_health();
+    const auto host = host_copy(block_);
+    std::string where;
+    for (int i = 0; i < Dim; ++i)
+      where += fmt::format("{}{:.6g}", i == 0 ? "" : ", ",
+                           host.particles.position(static_cast<size_t>(particle), static_cast<size_t>(i)));
+    throw Diverged(
+        fmt::format("at step {}, time {:.6g} s: position of particle {}, ({}) m, is outside the grid", step_,
+                    time(), particle, where));
+  }
+
+  Scene scene_;
+  PlacedParticles placed_;
+  ExecutionSpace exec_;
+  Basis basis_;
+  Field field_;
+  ParticleBlock<Dim, Real, Device> block_;
+  State<Dim, Real, Device> state_;
+  std::vector<Body<Real>> bodies_;
+  StepOptions<Dim, Real> options_{};
+  long long step_ = 0;
+};
+
+/// Both precisions of one dimension; each dimension is compiled on its own.
+std::unique_ptr<Simulation> make_simulation_1d(const Scene& scene);
+std::unique_ptr<Simulation> make_simulation_2d(const Scene& scene);
+std::unique_ptr<Simulation> make_simulation_3d(const Scene& scene);
+
+template <int Dim>
+std::unique_ptr<Simulation> make_simulation_of(const Scene& scene) {
+  if (scene.single_precision) return std::make_unique<SimulationOf<Dim, float>>(scene);
+  return std::make_unique<SimulationOf<Dim, double>>(scene);
+}
+
+}  // namespace vsb::app

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/summary.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <sstream>
+
+#include "files/build_info.hpp"
+#include "scene/toml_reader.hpp"
+
+namespace vsb::app {
+
+namespace {
+
+/// Largest resident set of this process so far.
+long long peak_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<long long>(usage.ru_maxrss) * 1024;
+}
+
+}  // namespace
+
+double RunFigures::ns_per_particle_step() const {
+  return steps_timed > 0 ? 1e9 * seconds / (static_cast<double>(particles) * static_cast<double>(steps_timed))
+                         : 0;
+}
+
+std::string summary_json(const Scene& scene, const RunFigures& f) {
+  toml::table errors, provenance;
+  for (const auto& [name, value] : f.errors) errors.insert(name, value);
+  for (const auto& [name, value] : build_info()) provenance.insert(name, value);
+  provenance.insert("scene", scene.resolved);
+  const toml::table summary{
+      {"name", scene.name},
+      {"dimension", scene.dimension},
+      {"errors", errors},
+      {"particles", f.particles},
+      {"boundary_nodes", f.boundary_nodes},
+      {"steps", f.steps},
+      {"dt", scene.time.dt},
+      {"time", static_cast<double>(f.steps) * scene.time.dt},
+      {"static", f.found_static},
+      {"force_ratio", f.balance.force_ratio},
+      {"energy_ratio", f.balance.energy_ratio},
+      {"net_force", toml::array{f.balance.net_force[0], f.balance.net_force[1], f.balance.net_force[2]}},
+      {"state_hash", f.state_hash},
+      {"seconds", f.seconds},
+      {"ns_per_particle_step", f.ns_per_particle_step()},
+      {"state_bytes", static_cast<long long>(f.state_bytes)},
+      {"peak_bytes", peak_bytes()},
+      {"provenance", provenance},
+  };
+  std::ostringstream out;
+  out << toml::json_formatter{summary} << "\n";
+  return out.str();
+}
+
+void print_report(const Scene& scene, const RunFigures& f) {
+  if (!f.errors.empty()) {
+    std::string head = fmt::format("{:<12}{:>12}", "error", "this run");
+    for (const auto& p : scene.published) head += fmt::format("  {:>24}", p.source);
+    fmt::print("{}\n", head);
+    for (const auto& [name, value] : f.errors) {
+      std::string line = fmt::format("{:<12}{:>12.4e}", name, value);
+      for (const auto& p : scene.published) {
+        const auto published = p.errors.find(name);
+        line += published == p.errors.end() ? fmt::format("  {:>24}", "-")
+                                            : fmt::format("  {:>12.4e} ({:>+7.2f} %)", published->second,
+                                                          100 * (value / published->second - 1));
+      }
+      fmt::print("{}\n", line);
+    }
+  }
+  const auto& force = f.balance.net_force;
+  fmt::print("{} steps in {:.3g} s: {:.4g} ns per particle and step; peak memory {:.4g} MB\n", f.steps_timed,
+             f.seconds, f.ns_per_particle_step(), static_cast<double>(peak_bytes()) / 1e6);
+  fmt::print(
+      "force ratio {:.2e}, energy ratio {:.2e}, resultant of the tractions ({:.6g}, {:.6g}, {:.6g}) N\n",
+      f.balance.force_ratio, f.balance.energy_ratio, force[0], force[1], force[2]);
+}
+
+}  // namespace vsb::app

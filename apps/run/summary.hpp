@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// The figures of a finished run, for summary.json and for the terminal.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "run/simulation.hpp"
+
+namespace vsb::app {
+
+struct RunFigures {
+  long long steps = 0;        ///< step number at the end
+  long long steps_timed = 0;  ///< steps made by this program, fewer after a resume
+  double seconds = 0;         ///< wall time of those steps alone
+  bool found_static = false;
+  int particles = 0, boundary_nodes = 0;
+  size_t state_bytes = 0;
+  BalanceReport balance;
+  std::string state_hash;  ///< of the particles' bits at the end
+  std::vector<std::pair<std::string, double>> errors;
+
+  double ns_per_particle_step() const;
+};
+
+/// Errors, counts, times, resultant, memory and provenance as JSON.
+std::string summary_json(const Scene& scene, const RunFigures& figures);
+
+/// The same for people: errors beside the published ones, then cost.
+void print_report(const Scene& scene, const RunFigures& figures);
+
+}  // namespace vsb::app

@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include <vsb/physics/explicit_dynamics.hpp>
+#include <vsb/physics/linear_elastic.hpp>
+#include "scene/read_region.hpp"
+#include "scene/scene.hpp"
+#include "scene/toml_reader.hpp"
+
+namespace vsb::app {
+
+namespace {
+
+const std::vector<std::string> axis_names = {"x", "y", "z"};
+
+GridSpec read_grid(TableReader r, int dimension) {
+  const auto d = static_cast<size_t>(dimension);
+  GridSpec grid;
+  const auto lower = r.numbers("lower", d, Range::any(), {}, "m, corner of the grid");
+  const auto upper = r.numbers("upper", d, Range::any(), {}, "m, opposite corner");
+  const auto spacing = r.number_or_numbers("spacing", d, Range::positive(), {}, "m, cell size");
+  r.finish();
+  double nodes = 1;
+  for (size_t i = 0; i < d; ++i) {
+    const double cells = (upper[i] - lower[i]) / spacing[i];
+    const double rounded = std::round(cells);
+    if (!(rounded >= 1) || std::abs(cells - rounded) > 1e-6 * rounded)
+      r.fail(*r.source().get("upper"), "upper",
+             fmt::format(
+                 "must lie a whole number of cells (>= 1) above 'lower'; in {} there are {} cells of {} m",
+                 axis_names[i], cells, spacing[i]));
+    nodes *= rounded + 1;
+    if (nodes > 1e9)
+      r.fail(*r.source().get("spacing"), "spacing",
+             fmt::format("the grid must have <= 1e9 nodes, not {:.3g}", nodes));
+    grid.lower[i] = lower[i];
+    grid.spacing[i] = spacing[i];
+    grid.cells[i] = static_cast<int>(rounded);
+  }
+  return grid;
+}
+
+FaceSpec read_faces(TableReader r, int dimension) {
+  FaceSpec faces;
+  const auto all = static_cast<unsigned char>((1 << dimension) - 1);
+  for (size_t axis = 0; axis < static_cast<size_t>(dimension); ++axis)
+    for (size_t side = 0; side < 2; ++side) {
+      const std::string key = axis_names[axis] + (side == 0 ? "_min" : "_max");
+      const toml::node* written = r.source().get(key);
+      if (written && written->is_array()) {
+        const std::vector<std::string> allowed(axis_names.begin(), axis_names.begin() + dimension);
+        for (const auto& component : r.texts(key, allowed))
+          faces.fixed[axis][side] =
+              static_cast<unsigned char>(faces.fixed[axis][side] | 1 << (component[0] - 'x'));
+        continue;
+      }
+      const std::string kind = r.choice(key, {"open", "roller", "fixed"}, "open");
+      if (kind == "roller") faces.fixed[axis][side] = static_cast<unsigned char>(1 << axis);
+      if (kind == "fixed") faces.fixed[axis][side] = all;
+    }
+  r.finish();
+  return faces;
+}
+
+LinearElasticSpec read_material(TableReader r) {
+  r.choice("law", {"linear_elastic"}, "linear_elastic");
+  LinearElasticSpec m{};
+  m.youngs_modulus = r.number("youngs_modulus", Range::positive(), {}, "Pa");
+  m.poisson_ratio = r.number("poisson_ratio", Range::inside(-1, 0.5));
+  r.finish();
+  return m;
+}
+
+/// A field that is constant (an array) or affine (a table with value and gradient, one row per direction).
+template <size_t N>
+Affine<std::array<double, N>> read_affine(TableReader& r, const std::string& key, size_t count, int dimension,
+                                          const std::string& unit) {
+  Affine<std::array<double, N>> field;
+  const auto copy = [](const std::vector<double>& from, std::array<double, N>& to) {
+    std::copy(from.begin(), from.end(), to.begin());
+  };
+  const toml::node* written = r.source().get(key);
+  if (!written || !written->is_table()) {
+    copy(r.numbers(key, count, Range::any(), std::vector<double>(count, 0.0), unit), field.value);
+    return field;
+  }
+  TableReader t = r.table(key);
+  copy(t.numbers("value", count, Range::any(), std::vector<double>(count, 0.0), unit), field.value);
+  for (size_t k = 0; k < static_cast<size_t>(dimension); ++k)
+    copy(
+        t.numbers("d" + axis_names[k], count, Range::any(), std::vector<double>(count, 0.0), unit + " per m"),
+        field.gradient[k]);
+  t.finish();
+  return field;
+}
+
+BodySpec read_body(TableReader r, int dimension, size_t number) {
+  const auto d = static_cast<size_t>(dimension);
+  BodySpec body;
+  body.name = r.text("name", fmt::format("body {}", number + 1));
+  body.region = read_region(r, "shape", dimension, false);
+  const auto ppc = r.integer_or_integers("particles_per_cell", d, 1, 64, {}, "in each direction");
+  std::copy(ppc.begin(), ppc.end(), body.particles_per_cell.begin());
+  body.density = r.number("density", Range::positive(), {}, "kg/m^3");
+  body.stress = read_affine<6>(r, "stress", 6, dimension, "Pa, tension positive: xx yy zz xy yz xz");
+  body.velocity = read_affine<3>(r, "velocity", d, dimension, "m/s");
+  body.material = read_material(r.table("material"));
+  r.finish();
+  return body;
+}
+
+/// dt is only known after the materials: a ramp given in steps is kept as such until then.
+struct TimeShape {
+  TimeFunction in_seconds;
+  long long ramp_steps = 0;
+};
+
+TimeShape read_time_function(TableReader r) {
+  TimeShape shape;
+  const int given = int(r.has("ramp")) + int(r.has("ramp_steps")) + int(r.has("step")) + int(r.has("table"));
+  if (given > 1) {
+    const auto& first = *r.source().begin();
+    r.fail(first.second, std::string(first.first.str()), "give one of ramp, ramp_steps, step and table");
+  }
+  if (r.has("ramp_steps")) {
+    shape.ramp_steps = r.integer("ramp_steps", 1, 1'000'000'000'000LL, {}, "steps to full load");
+  } else if (r.has("step")) {
+    shape.in_seconds =
+        TimeFunction::step(r.number("step", Range::at_least(0), {}, "s, full load from here on"));
+  } else if (r.has("table")) {
+    const toml::node& node = *r.node("table");
+    const char* what = "must be an array of [time in s, factor] pairs, times not decreasing";
+    std::vector<std::pair<double, double>> points;
+    const auto* rows = node.as_array();
+    if (!rows || rows->empty()) r.fail(node, "table", what);
+    for (const auto& row : *rows) {
+      const auto* pair = row.as_array();
+      if (!pair || pair->size() != 2) r.fail(row, "table", what);
+      points.emplace_back(checked_number(r, *pair->get(0), "table", Range::at_least(0)),
+                          checked_number(r, *pair->get(1), "table", Range::any()));
+      if (points.size() > 1 && points.back().first < points[points.size() - 2].first)
+        r.fail(row, "table", what);
+    }
+    shape.in_seconds = TimeFunction(std::move(points));
+  } else {
+    const double duration =
+        r.number("ramp", Range::at_least(0), 0.0, "s to full load; 0: full load from the start");
+    if (duration > 0) shape.in_seconds = TimeFunction::ramp(duration);
+  }
+  r.finish();
+  return shape;
+}
+
+TractionSpec read_traction(TableReader r, int dimension, size_t number, TimeShape& time) {
+  TractionSpec traction;
+  traction.name = r.text("name", fmt::format("traction {}", number + 1));
+  const auto* pressure = r.source().get("pressure");
+  if (pressure && r.has("stress"))
+    r.fail(*pressure, "pressure", "give either a pressure or a virtual stress, not both");
+  if (r.has("stress")) {
+    const auto s =
+        r.numbers("stress", 6, Range::any(), {}, "Pa, virtual stress, tension positive: xx yy zz xy yz xz");
+    std::copy(s.begin(), s.end(), traction.virtual_stress.begin());
+  } else {
+    const double p = r.number("pressure", Range::any(), {}, "Pa, positive in compression");
+    traction.virtual_stress = {-p, -p, -p, 0, 0, 0};
+  }
+  traction.surface = read_region(r, "surface", dimension, true);
+  time = read_time_function(r.table("time"));
+  r.finish();
+  return traction;
+}
+
+MethodSpec read_method(TableReader r) {
+  MethodSpec m;
+  m.damping =
+      r.number("damping", {0, 1, false, true}, 0.0, "Cundall's alpha; not for bodies that move as a whole");
+  m.volume_update = r.choice("volume_update", {"determinant", "exponential"}, "determinant");
+  m.scatter = r.choice("scatter", {"gathered", "duplicated", "atomic"}, "gathered");
+  r.finish();
+  return m;
+}
+
+/// The shortest of the bodies' times for a compression wave to cross a cell: dt of Eq. (29) for kappa = 1.
+double critical_time(const Scene& scene) {
+  const auto& h = scene.grid.spacing;
+  const double smallest = *std::min_element(h.begin(), h.begin() + scene.dimension);
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const auto& body : scene.bodies) {
+    const auto m =
+        LinearElastic<double>::from_young(body.material.youngs_modulus, body.material.poisson_ratio);
+    shortest = std::min(shortest, time_step(1.0, smallest, m.constrained_modulus(), body.density));
+  }
+  return shortest;
+}
+
+TimeSpec read_time(TableReader r, const Scene& scene) {
+  TimeSpec t;
+  const double critical = critical_time(scene);
+  if (r.has("dt") && r.has("kappa"))
+    r.fail(*r.source().get("kappa"), "kappa", "give either dt or kappa, not both");
+  if (r.has("dt")) {
+    t.dt = r.number("dt", {0, 2 * critical, true, false}, {},
+                    fmt::format("s; a compression wave crosses a cell in {:.6g} s", critical));
+    t.kappa = t.dt / critical;
+  } else {
+    t.kappa = r.number("kappa", {0, 2, true, false}, {}, "share of the critical time step, Eq. (29)");
+    t.dt = t.kappa * critical;
+  }
+  const long long most = 1'000'000'000'000LL;
+  if (r.has("until_static")) {
+    if (r.has("steps"))
+      r.fail(*r.source().get("steps"), "steps",
+             "give either steps or until_static (with max_steps), not both");
+    TableReader s = r.table("until_static");
+    StaticCriterion c{};
+    c.force_ratio = s.number("force_ratio", {0, 1, true, true}, 1e-6, "unbalanced force / internal force");
+    c.energy_ratio = s.number("energy_ratio", {0, 1, true, true}, 1e-9, "kinetic energy / strain energy");
+    c.check_every = s.integer("check_every", 1, most, 100, "steps");
+    t.steps = s.integer("max_steps", 1, most, 1'000'000LL);
+    s.finish();
+    t.until_static = c;
+  } else {
+    t.steps = r.integer("steps", 1, most, {}, "or a table until_static");
+  }
+  r.finish();
+  return t;
+}
+
+OutputSpec read_output(TableReader r) {
+  static const std::vector<std::string> fields = {"id",     "displacement", "velocity",   "cauchy_stress",
+                                                  "volume", "mass",         "in_boundary"};
+  OutputSpec o;
+  o.every =
+      r.integer("every", 0, 1'000'000'000'000LL, 0, "steps between frames; 0: first and last state only");
+  o.fields = r.texts("fields", fields, fields);
+  o.grid = r.boolean("grid", false);
+  o.checkpoint_minutes =
+      r.number("checkpoint_minutes", Range::at_least(0), 10.0, "wall time; 0: at an interrupt only");
+  r.finish();
+  return o;
+}
+
+Comparison read_comparison(TableReader& document) {
+  if (!document.has("compare")) return {};
+  TableReader r = document.table("compare");
+  const std::string solution = r.choice("solution", {"column", "cylinder", "ellipse"});
+  Comparison comparison;
+  if (solution == "column") {
+    ColumnComparison c{};
+    c.length = r.number("length", Range::positive(), {}, "m, L0 of Eq. (30)");
+    c.traction = r.number("traction", Range::positive(), {}, "Pa, positive in compression");
+    comparison = c;
+  } else if (solution == "cylinder") {
+    CylinderComparison c{};
+    c.inner_radius = r.number("inner_radius", Range::positive(), {}, "m");
+    c.outer_radius = r.number("outer_radius", {c.inner_radius, Range::any().max, true, false}, {}, "m");
+    c.pressure = r.number("pressure", Range::positive(), {}, "Pa, positive in compression");
+    comparison = c;
+  } else {
+    EllipseComparison c{};
+    c.semi_major = r.number("semi_major", Range::positive(), {}, "m, along x");
+    c.semi_minor = r.number("semi_minor", Range::positive(), {}, "m");
+    c.pressure = r.number("pressure", Range::positive(), {}, "Pa in the hole, positive in compression");
+    c.far_stress = r.number("far_stress", Range::any(), {}, "Pa, -sigma_yy far away");
+    c.far_ratio = r.number("far_ratio", Range::any(), {}, "K = sigma_xx / sigma_yy far away");
+    comparison = c;
+  }
+  r.finish();
+  return comparison;
+}
+
+/// The names of the error norms that a comparison yields.
+std::vector<std::string> error_names(const Comparison& comparison) {
+  if (std::holds_alternative<ColumnComparison>(comparison)) return {"e_u", "e_u_exact", "e_sigma"};
+  if (std::holds_alternative<CylinderComparison>(comparison)) return {"e_rr", "e_tt", "e_u"};
+  if (std::holds_alternative<EllipseComparison>(comparison)) return {"e_xx", "e_yy", "e_xy"};
+  return {};
+}
+
+Published read_published(TableReader r, const std::vector<std::string>& names) {
+  Published p;
+  p.source = r.text("source");
+  for (const auto& name : names)
+    if (r.has(name)) p.errors[name] = r.number(name, Range::at_least(0));
+  r.finish();
+  return p;
+}
+
+}  // namespace
+
+Scene read_scene(const std::string& path, const std::vector<std::string>& overrides) {
+  const toml::table document = parse_scene_file(path, overrides);
+  ResolvedTable resolved;
+  TableReader r(document, "", resolved);
+  Scene scene;
+  scene.name = r.text("name", std::filesystem::path(path).stem().string());
+  if (scene.name.empty() || scene.name.find_first_of("/\\ \t\n") != std::string::npos ||
+      scene.name[0] == '.') {
+    const std::string what = "must be usable as a file name: not empty, no space or slash, no leading dot";
+    if (const auto* node = document.get("name")) r.fail(*node, "name", what);
+    r.missing("name", what);
+  }
+  scene.title = r.text("title", "");
+  scene.dimension = static_cast<int>(r.integer("dimension", 1, 3));
+  scene.single_precision = r.choice("precision", {"double", "float"}, "double") == "float";
+  const auto gravity = r.numbers("gravity", static_cast<size_t>(scene.dimension), Range::any(),
+                                 std::vector<double>(static_cast<size_t>(scene.dimension), 0.0), "m/s^2");
+  std::copy(gravity.begin(), gravity.end(), scene.gravity.begin());
+  if (!r.has("grid")) r.missing("grid", "a table with lower, upper and spacing");
+  scene.grid = read_grid(r.table("grid"), scene.dimension);
+  scene.faces = read_faces(r.table("faces"), scene.dimension);
+  for (auto& table : r.tables("body"))
+    scene.bodies.push_back(read_body(table, scene.dimension, scene.bodies.size()));
+  if (scene.bodies.empty()) r.missing("body", "at least one table [[body]]");
+  std::vector<TimeShape> time_shapes;
+  for (auto& table : r.tables("traction")) {
+    if (scene.tractions.size() == max_tractions)
+      r.fail(*document.get("traction"), "traction", fmt::format("at most {} tractions", max_tractions));
+    time_shapes.emplace_back();
+    scene.tractions.push_back(
+        read_traction(table, scene.dimension, scene.tractions.size(), time_shapes.back()));
+  }
+  scene.method = read_method(r.table("method"));
+  if (!r.has("time")) r.missing("time", "a table with dt or kappa, and steps or until_static");
+  scene.time = read_time(r.table("time"), scene);
+  for (size_t k = 0; k < time_shapes.size(); ++k) {
+    const auto& shape = time_shapes[k];
+    scene.tractions[k].time = shape.ramp_steps > 0
+                                  ? TimeFunction::ramp(static_cast<double>(shape.ramp_steps) * scene.time.dt)
+                                  : shape.in_seconds;
+  }
+  scene.output = read_output(r.table("output"));
+  scene.compare = read_comparison(r);
+  for (auto& table : r.tables("published"))
+    scene.published.push_back(read_published(table, error_names(scene.compare)));
+  r.finish();
+  scene.resolved = resolved.toml();
+  return scene;
+}
+
+}  // namespace vsb::app

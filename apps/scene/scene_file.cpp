@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// The scene file with the overrides of the command line put in, before anything is checked.
+#include <fmt/format.h>
+
+#include <sstream>
+#include <variant>
+
+#include "scene/toml_reader.hpp"
+
+namespace vsb::app {
+
+namespace {
+
+/// Splits "body[0].density" into "body", 0, "density".
+std::vector<std::variant<std::string, size_t>> split_path(const std::string& path,
+                                                          const std::string& argument) {
+  std::vector<std::variant<std::string, size_t>> parts;
+  std::istringstream stream(path);
+  for (std::string piece; std::getline(stream, piece, '.');) {
+    const auto bracket = piece.find('[');
+    parts.emplace_back(piece.substr(0, bracket));
+    for (auto at = bracket; at != std::string::npos; at = piece.find('[', at + 1)) {
+      const auto close = piece.find(']', at);
+      const std::string digits = piece.substr(at + 1, close == std::string::npos ? 0 : close - at - 1);
+      if (digits.empty() || digits.size() > 6 || digits.find_first_not_of("0123456789") != std::string::npos)
+        throw SceneError(fmt::format("--set {}: '{}' needs an index like body[0]", argument, piece));
+      parts.emplace_back(static_cast<size_t>(std::stoul(digits)));
+    }
+  }
+  return parts;
+}
+
+/// The value text as TOML; a bare word is a string.
+toml::table parse_value(const std::string& text, const std::string& source) {
+  try {
+    return toml::parse("value = " + text, source);
+  } catch (const toml::parse_error&) {
+    try {
+      return toml::parse("value = " + quoted(text), source);
+    } catch (const toml::parse_error& error) {
+      throw SceneError(fmt::format("{}: {}", source, std::string(error.description())));
+    }
+  }
+}
+
+void apply_override(toml::table& document, const std::string& argument) {
+  const auto equals = argument.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw SceneError(fmt::format("--set {}: must be key=value, such as time.kappa=0.1", argument));
+  const std::string source = "--set " + argument;
+  auto value = parse_value(argument.substr(equals + 1), source);
+  const auto parts = split_path(argument.substr(0, equals), argument);
+  toml::node* node = &document;
+  for (size_t i = 0; i < parts.size(); ++i) {
+    const bool last = i + 1 == parts.size();
+    if (const auto* key = std::get_if<std::string>(&parts[i])) {
+      auto* table = node->as_table();
+      if (!table) throw SceneError(fmt::format("{}: '{}' is not inside a table", source, *key));
+      if (last) {
+        table->insert_or_assign(*key, std::move(*value.get("value")));
+        return;
+      }
+      if (!table->contains(*key)) {
+        if (std::holds_alternative<size_t>(parts[i + 1]))
+          throw SceneError(fmt::format("{}: there is no '{}' in the scene", source, *key));
+        table->insert(*key, toml::parse("", source));
+      }
+      node = table->get(*key);
+    } else {
+      auto* array = node->as_array();
+      const size_t index = std::get<size_t>(parts[i]);
+      if (!array || index >= array->size())
+        throw SceneError(fmt::format("{}: there is no element {} (the array has {})", source, index,
+                                     array ? array->size() : 0));
+      if (last) {
+        array->replace(array->cbegin() + static_cast<std::ptrdiff_t>(index), std::move(*value.get("value")));
+        return;
+      }
+      node = array->get(index);
+    }
+  }
+}
+
+}  // namespace
+
+toml::table parse_scene_file(const std::string& path, const std::vector<std::string>& overrides) {
+  toml::table document;
+  try {
+    document = toml::parse_file(path);
+  } catch (const toml::parse_error& error) {
+    const auto& begin = error.source().begin;
+    throw SceneError(
+        begin ? fmt::format("{}:{}:{}: {}", path, begin.line, begin.column, std::string(error.description()))
+              : fmt::format("{}: {}", path, std::string(error.description())));
+  }
+  for (const auto& argument : overrides) apply_override(document, argument);
+  return document;
+}
+
+}  // namespace vsb::app

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// The program vsb: run, check, info.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdlib>
+#include <vsb/views/kokkos_compat.hpp>
+
+#include "files/build_info.hpp"
+#include "files/hdf5_file.hpp"
+#include "run/run_scene.hpp"
+#include "run/simulation.hpp"
+#include "scene/toml_reader.hpp"
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+namespace {
+
+using namespace vsb::app;
+
+/// Kokkos for the lifetime of the object, with this many threads (0: OMP_NUM_THREADS, or all cores).
+class KokkosSession {
+ public:
+  explicit KokkosSession(int threads) {
+    // Kokkos warns when nobody has decided about binding; threads of a desktop program are best left unbound.
+    setenv("OMP_PROC_BIND", "false", 0);
+#if defined(_OPENMP) && defined(VSB_BACKEND_OPENMP)
+    if (threads > 0) omp_set_num_threads(threads);
+#else
+    if (threads > 1)
+      throw SceneError("--threads: this program was built for a backend without threads; use 1");
+#endif
+    Kokkos::initialize();
+  }
+  ~KokkosSession() {
+    Kokkos::finalize();
+  }
+  KokkosSession(const KokkosSession&) = delete;
+  KokkosSession& operator=(const KokkosSession&) = delete;
+};
+
+/// Threads that pay: below some thousand particles each, starting a kernel costs more than it saves.
+int useful_threads(int particles) {
+#if defined(_OPENMP) && defined(VSB_BACKEND_OPENMP)
+  return std::clamp(particles / 2000, 1, omp_get_max_threads());
+#else
+  return particles > 0 ? 1 : 0;
+#endif
+}
+
+void print_info() {
+  fmt::print("vsb\n");
+  for (const auto& [name, value] : build_info()) fmt::print("  {:<16} {}\n", name, value);
+#if defined(_OPENMP) && defined(VSB_BACKEND_OPENMP)
+  fmt::print("  {:<16} {}\n", "threads", omp_get_max_threads());
+#endif
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "vsb: material point method with tractions by the virtual stress boundary method.\n\n"
+      "A scene is a TOML file; the ones to start from lie in apps/scenes. A typical session:\n"
+      "  vsb check column.toml                        what would run, and what it would cost\n"
+      "  vsb run column.toml --set time.steps=30000   run it, with another number of steps\n"
+      "  python3 apps/plot.py results/column          draw its pictures\n\n"
+      "Exit codes: 0 done, 2 bad usage or input, 3 diverged, 4 files cannot be read or written,\n"
+      "5 interrupted, checkpoint written."};
+  app.require_subcommand(1);
+  app.failure_message(CLI::FailureMessage::help);
+
+  std::string scene_path;
+  std::vector<std::string> overrides;
+  RunOptions options;
+  int threads = 0;
+  const auto add_scene_options = [&](CLI::App* command) {
+    command->add_option("scene", scene_path, "Scene file (TOML)")->required();
+    command
+        ->add_option("--set", overrides,
+                     "Replace a value of the scene, e.g. time.kappa=0.1 or body[0].density=2000")
+        ->type_name("KEY=VALUE")
+        ->take_all();
+    command
+        ->add_option("--threads", threads,
+                     "Number of threads (default: OMP_NUM_THREADS, else as many as pay)")
+        ->check(CLI::Range(1, 1024));
+  };
+
+  auto* run = app.add_subcommand("run", "Run a scene");
+  add_scene_options(run);
+  run->add_option("--out", options.directory, "Directory of the results (default: results/NAME)");
+  run->add_flag("--quiet", options.quiet, "Print errors only");
+  run->add_flag("--resume", options.resume,
+                "Continue from the checkpoint in the results' directory, if there is one");
+
+  auto* check =
+      app.add_subcommand("check", "Print the resolved scene with all defaults, and what it would cost");
+  add_scene_options(check);
+
+  auto* info = app.add_subcommand("info", "Print version, commit, Kokkos, backend and instruction set");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? exit_done : exit_input;
+  }
+
+  try {
+    if (*info) {
+      print_info();
+      return exit_done;
+    }
+    const Scene scene = read_scene(scene_path, overrides);
+    if (options.directory.empty()) options.directory = "results/" + scene.name;
+    if (threads == 0 && !std::getenv("OMP_NUM_THREADS")) threads = useful_threads(count_particles(scene));
+    const KokkosSession kokkos(threads);
+    if (*run) return run_scene(scene, options);
+    if (*check) check_scene(scene);
+    return exit_done;
+  } catch (const SceneError& error) {
+    fmt::print(stderr, "vsb: {}\n", error.what());
+    return exit_input;
+  } catch (const SetupError& error) {
+    fmt::print(stderr, "vsb: {}: {}\n", scene_path, error.what());
+    return exit_input;
+  } catch (const Diverged& error) {
+    fmt::print(stderr, "vsb: diverged {}\n", error.what());
+    return exit_diverged;
+  } catch (const FileError& error) {
+    fmt::print(stderr, "vsb: {}\n", error.what());
+    return exit_files;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "vsb: out of memory; 'vsb check' says what a scene needs\n");
+    return exit_input;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "vsb: internal error: {}\n", error.what());
+    return exit_internal;
+  }
+}
