@@ -43,10 +43,10 @@ class KokkosSession {
   KokkosSession& operator=(const KokkosSession&) = delete;
 };
 
-/// Threads that pay: below some thousand particles each, starting a kernel costs more than it saves.
+/// Threads that pay: below ten thousand particles each, starting a kernel costs more than it saves.
 int useful_threads(int particles) {
 #if defined(_OPENMP) && defined(VSB_BACKEND_OPENMP)
-  return std::clamp(particles / 2000, 1, omp_get_max_threads());
+  return std::clamp(particles / 10000, 1, omp_get_max_threads());
 #else
   return particles > 0 ? 1 : 0;
 #endif
@@ -63,6 +63,7 @@ void print_info() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // lines reach a log file or a pipe as they are printed
   CLI::App app{
       "vsb: material point method with tractions by the virtual stress boundary method.\n\n"
       "A scene is a TOML file; the ones to start from lie in apps/scenes. A typical session:\n"

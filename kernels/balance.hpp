@@ -3,7 +3,9 @@
 /// How far a state is from equilibrium, and the resultant of its tractions.
 ///   unbalanced U = |f| over free components;   internal I = |f| without virtual stress, over all components;
 ///   force ratio U / I;   net force = sum_I (f_I with - f_I without virtual stress);
-///   kinetic energy sum_p m |v|^2 / 2;   strain energy scale sum_p V |sigma|^2 / (2 M).
+///   kinetic energy sum_I |p_I|^2 / (2 m_I);   strain energy scale sum_p V |sigma|^2 / (2 M).
+/// The kinetic energy is the grid's: velocities of FLIP particles that cancel at every node move nothing, and
+/// no damping ever reaches them.
 #pragma once
 
 #include <vsb/kernels/ordered_sum.hpp>
@@ -27,34 +29,35 @@ namespace kernel {
 
 template <int Dim, class Real, class Device>
 struct NodeBalance {
-  Nodes<Dim, Real, Device> nodes;                  ///< forces with virtual stress
+  static constexpr int size = 3 + Dim;
+  Nodes<Dim, Real, Device> nodes;                  ///< sums with virtual stress
   typename Nodes<Dim, Real, Device>::Fields bare;  ///< sums without
 
-  KOKKOS_FUNCTION void operator()(int I, Vector<2 + Dim, double>& sum) const {
+  KOKKOS_FUNCTION void operator()(int I, Vector<size, double>& sum) const {
+    const double m = nodes.mass(I);
     for (int i = 0; i < Dim; ++i) {
-      const double f = nodes.force(I, i), g = bare(I, 1 + Dim + i);
-      if (!(nodes.fixed_components(I) >> i & 1)) sum[0] += f * f;
+      const double f = nodes.force(I, i), g = bare(I, 1 + Dim + i), p = nodes.momentum(I, i);
+      const bool fixed = nodes.fixed_components(I) >> i & 1;
+      if (!fixed) sum[0] += f * f;
       sum[1] += g * g;
-      sum[2 + i] += f - g;
+      if (!fixed && m > 0) sum[2] += 0.5 * p * p / m;
+      sum[3 + i] += f - g;
     }
   }
 };
 
 template <int Dim, class Real, class Device>
-struct ParticleEnergy {
+struct StrainEnergy {
   Particles<Dim, Real, Device> particles;
   int first;
   double modulus;
 
-  KOKKOS_FUNCTION void operator()(int i, Vector<2, double>& sum) const {
-    const int p = first + i;
-    const auto v = particles.velocity_of(p);
-    const auto s = particles.stress_of(p);
+  KOKKOS_FUNCTION void operator()(int i, Vector<1, double>& sum) const {
+    const auto s = particles.stress_of(first + i);
     double ss = 0;
     for (int c = 0; c < SymmetricTensor<Dim, Real>::size; ++c)
       ss += (c < 3 ? 1.0 : 2.0) * static_cast<double>(s[c]) * static_cast<double>(s[c]);
-    sum[0] += 0.5 * static_cast<double>(particles.mass(p)) * static_cast<double>(dot(v, v));
-    sum[1] += 0.5 * static_cast<double>(particles.volume(p)) * ss / modulus;
+    sum[0] += 0.5 * static_cast<double>(particles.volume(first + i)) * ss / modulus;
   }
 };
 
@@ -72,18 +75,16 @@ Balance<Dim> balance(const Exec& exec, State<Dim, Real, Device>& s, const std::v
                     NoVirtualStress{}, options.gravity, options.scatter);
   particles_to_grid(exec, s.particles, s.occupancy.bins, s.nodes, s.occupancy.boundary, s.sums_workspace,
                     basis, virtual_stress, options.gravity, options.scatter);
-  const auto forces = ordered_sum<2 + Dim, Device>(
-      exec, "vsb::node_balance", s.nodes.count(), kernel::NodeBalance<Dim, Real, Device>{s.nodes, bare.sums});
-  Balance<Dim> result{math::sqrt(forces[0]), math::sqrt(forces[1]), {}, 0, 0};
-  for (int i = 0; i < Dim; ++i) result.net_force[i] = forces[2 + i];
+  const auto sums = ordered_sum<3 + Dim, Device>(exec, "vsb::node_balance", s.nodes.count(),
+                                                 kernel::NodeBalance<Dim, Real, Device>{s.nodes, bare.sums});
+  Balance<Dim> result{math::sqrt(sums[0]), math::sqrt(sums[1]), {}, sums[2], 0};
+  for (int i = 0; i < Dim; ++i) result.net_force[i] = sums[3 + i];
   for (const auto& body : bodies) {
     const double modulus =
         std::visit([](const auto& m) { return double(m.constrained_modulus()); }, body.material);
-    const auto energy =
-        ordered_sum<2, Device>(exec, "vsb::particle_energy", body.last - body.first,
-                               kernel::ParticleEnergy<Dim, Real, Device>{s.particles, body.first, modulus});
-    result.kinetic_energy += energy[0];
-    result.strain_energy += energy[1];
+    result.strain_energy +=
+        ordered_sum<1, Device>(exec, "vsb::strain_energy", body.last - body.first,
+                               kernel::StrainEnergy<Dim, Real, Device>{s.particles, body.first, modulus})[0];
   }
   return result;
 }

@@ -7,7 +7,8 @@ mkdir -p "$project/build/log"
 : >"$log"
 started=$SECONDS
 
-say() { printf '%s\n' "$*" | tee -a "$log"; }
+# say LINE...: to the terminal and the log.
+say() { printf '%s\n' "$@" | tee -a "$log"; }
 
 fail() {
   say "$task: FAILED: $*"
@@ -48,4 +49,15 @@ build_preset() {
   shift
   step "configure preset $name" cmake --preset "$name" ${cmake_options[@]+"${cmake_options[@]}"}
   step "build preset $name ($*)" cmake --build --preset "$name" --parallel "$(nproc)" --target "$@"
+}
+
+# python_with MODULE...: prints the first python3 that has the modules; the distribution's own may not be first in PATH.
+python_with() {
+  local candidate module
+  for candidate in python3 /usr/bin/python3; do
+    for module in "$@"; do "$candidate" -c "import $module" 2>/dev/null || continue 2; done
+    printf '%s\n' "$candidate"
+    return
+  done
+  return 1
 }

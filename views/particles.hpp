@@ -114,8 +114,10 @@ ParticleBlock<Dim, Real, Kokkos::HostSpace> host_copy(const ParticleBlock<Dim, R
 template <int Dim, class Real, class Device>
 typename Particles<Dim, Real, Device>::Fields make_unmanaged_field(Real* pointer, int particles, int columns,
                                                                    int row_stride, int column_stride) {
-  return {pointer, Kokkos::LayoutStride(static_cast<size_t>(particles), static_cast<size_t>(row_stride),
-                                        static_cast<size_t>(columns), static_cast<size_t>(column_stride))};
+  using Fields = typename Particles<Dim, Real, Device>::Fields;
+  return Fields(pointer,
+                Kokkos::LayoutStride(static_cast<size_t>(particles), static_cast<size_t>(row_stride),
+                                     static_cast<size_t>(columns), static_cast<size_t>(column_stride)));
 }
 
 }  // namespace vsb

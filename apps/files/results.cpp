@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <numeric>
 
 #include "files/build_info.hpp"
 #include "files/hdf5_file.hpp"
@@ -22,12 +24,35 @@ void write_provenance(Hdf5Writer& file, const Scene& scene) {
   file.attribute("provenance", "scene", scene.resolved);
 }
 
-void begin_vtkhdf(Hdf5Writer& file, const std::string& type, double time) {
+/// Points and cells of one kind.
+struct Mesh {
+  std::vector<double> points;              ///< [3 per point], m
+  std::vector<std::int64_t> connectivity;  ///< [points_per_cell per cell]
+  size_t points_per_cell = 1;
+  unsigned char cell_type = 1;  ///< VTK's number; 1 is a vertex
+};
+
+/// The VTKHDF 1.0 group of an unstructured grid; the data of the points follow in VTKHDF/PointData.
+void write_mesh(Hdf5Writer& file, const Mesh& mesh, double time) {
   file.group("VTKHDF");
   file.attribute("VTKHDF", "Version", std::vector<std::int64_t>{1, 0});
-  file.attribute("VTKHDF", "Type", type);
+  file.attribute("VTKHDF", "Type", "UnstructuredGrid");
   for (const char* group : {"PointData", "CellData", "FieldData"}) file.group(std::string("VTKHDF/") + group);
   file.dataset("VTKHDF/FieldData/TimeValue", std::vector<double>{time}, {1});
+  const size_t points = mesh.points.size() / 3, cells = mesh.connectivity.size() / mesh.points_per_cell;
+  const auto number = [&](const char* name, size_t value) {
+    file.dataset(std::string("VTKHDF/") + name, std::vector<std::int64_t>{static_cast<std::int64_t>(value)},
+                 {1});
+  };
+  number("NumberOfPoints", points);
+  number("NumberOfCells", cells);
+  number("NumberOfConnectivityIds", mesh.connectivity.size());
+  file.dataset("VTKHDF/Points", mesh.points, {points, 3});
+  file.dataset("VTKHDF/Connectivity", mesh.connectivity, {mesh.connectivity.size()});
+  std::vector<std::int64_t> offsets(cells + 1);
+  for (size_t i = 0; i <= cells; ++i) offsets[i] = static_cast<std::int64_t>(i * mesh.points_per_cell);
+  file.dataset("VTKHDF/Offsets", offsets, {cells + 1});
+  file.dataset("VTKHDF/Types", std::vector<unsigned char>(cells, mesh.cell_type), {cells});
 }
 
 std::string frame_name(const std::string& stem, long long step) {
@@ -90,20 +115,13 @@ void Results::add_to_index(Series& series, const std::string& file, double time)
 
 void Results::write_frame(const Snapshot& s, const ExactFields& exact) {
   const size_t n = s.count();
-  const auto count = static_cast<std::int64_t>(n);
   const std::string name = frame_name(particles_.stem, s.step);
   Hdf5Writer file(path(name));
-  begin_vtkhdf(file, "UnstructuredGrid", s.time);
-  for (const char* number : {"NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"})
-    file.dataset(std::string("VTKHDF/") + number, std::vector<std::int64_t>{count}, {1});
-  file.dataset("VTKHDF/Points", s.position, {n, 3});
-  std::vector<std::int64_t> numbers(n + 1);
-  for (size_t i = 0; i <= n; ++i) numbers[i] = static_cast<std::int64_t>(i);
-  file.dataset("VTKHDF/Offsets", numbers, {n + 1});
-  numbers.pop_back();
-  file.dataset("VTKHDF/Connectivity", numbers, {n});
-  file.dataset("VTKHDF/Types", std::vector<unsigned char>(n, 1), {n});  // VTK_VERTEX
-
+  Mesh mesh;
+  mesh.points = s.position;
+  mesh.connectivity.resize(n);
+  std::iota(mesh.connectivity.begin(), mesh.connectivity.end(), std::int64_t(0));
+  write_mesh(file, mesh, s.time);
   const auto& fields = scene_.output.fields;
   const auto wanted = [&](const char* field) {
     return std::find(fields.begin(), fields.end(), field) != fields.end();
@@ -130,33 +148,41 @@ void Results::write_frame(const Snapshot& s, const ExactFields& exact) {
   add_to_index(particles_, name, s.time);
 }
 
+/// The grid goes out as a mesh of lines, quadrilaterals or hexahedra: VTK 9.1 crashes on plane image data.
 void Results::write_grid_frame(const GridSnapshot& grid, long long step, double time) {
   const std::string name = frame_name(grid_.stem, step);
   Hdf5Writer file(path(name));
-  begin_vtkhdf(file, "ImageData", time);
-  std::vector<std::int64_t> extent;
-  std::vector<size_t> zyx(3, 1);
-  std::vector<double> origin(3, 0.0), spacing(3, 1.0);
-  for (size_t i = 0; i < 3; ++i) {
-    const bool used = i < static_cast<size_t>(scene_.dimension);
-    const int cells = used ? scene_.grid.cells[i] : 0;
-    extent.insert(extent.end(), {0, cells});
-    zyx[2 - i] = static_cast<size_t>(cells) + 1;
-    if (used) {
-      origin[i] = scene_.grid.lower[i];
-      spacing[i] = scene_.grid.spacing[i];
-    }
+  const auto d = static_cast<size_t>(scene_.dimension);
+  std::array<size_t, 3> nodes{1, 1, 1}, cells{1, 1, 1};
+  for (size_t i = 0; i < d; ++i) {
+    cells[i] = static_cast<size_t>(scene_.grid.cells[i]);
+    nodes[i] = cells[i] + 1;
   }
-  file.attribute("VTKHDF", "WholeExtent", extent);
-  file.attribute("VTKHDF", "Origin", origin);
-  file.attribute("VTKHDF", "Spacing", spacing);
-  file.attribute("VTKHDF", "Direction", std::vector<double>{1, 0, 0, 0, 1, 0, 0, 0, 1});
-  auto zyxc = zyx;
-  zyxc.push_back(3);
-  file.dataset("VTKHDF/PointData/mass", grid.mass, zyx);
-  file.dataset("VTKHDF/PointData/velocity", grid.velocity, zyxc);
-  file.dataset("VTKHDF/PointData/force", grid.force, zyxc);
-  file.dataset("VTKHDF/PointData/boundary", grid.boundary, zyx);
+  Mesh mesh;
+  for (size_t k = 0; k < nodes[2]; ++k)
+    for (size_t j = 0; j < nodes[1]; ++j)
+      for (size_t i = 0; i < nodes[0]; ++i) {
+        const std::array<size_t, 3> ijk{i, j, k};
+        for (size_t c = 0; c < 3; ++c)
+          mesh.points.push_back(
+              c < d ? scene_.grid.lower[c] + static_cast<double>(ijk[c]) * scene_.grid.spacing[c] : 0.0);
+      }
+  constexpr std::array<std::array<size_t, 3>, 8> corners{
+      {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};
+  for (size_t k = 0; k < cells[2]; ++k)
+    for (size_t j = 0; j < cells[1]; ++j)
+      for (size_t i = 0; i < cells[0]; ++i)
+        for (size_t a = 0; a < (size_t(1) << d); ++a)
+          mesh.connectivity.push_back(static_cast<std::int64_t>(
+              i + corners[a][0] + nodes[0] * (j + corners[a][1] + nodes[1] * (k + corners[a][2]))));
+  mesh.points_per_cell = size_t(1) << d;
+  mesh.cell_type = d == 1 ? 3 : d == 2 ? 9 : 12;  // VTK_LINE, VTK_QUAD, VTK_HEXAHEDRON
+  write_mesh(file, mesh, time);
+  const size_t n = grid.mass.size();
+  file.dataset("VTKHDF/PointData/mass", grid.mass, {n});
+  file.dataset("VTKHDF/PointData/velocity", grid.velocity, {n, 3});
+  file.dataset("VTKHDF/PointData/force", grid.force, {n, 3});
+  file.dataset("VTKHDF/PointData/boundary", grid.boundary, {n});
   write_provenance(file, scene_);
   file.commit();
   add_to_index(grid_, name, time);

@@ -2,7 +2,7 @@
 /// \file
 /// What a run leaves behind: frames that ParaView opens, a checkpoint, and a summary.
 ///   NAME_000123.hdf, NAME.hdf.series   particles, VTKHDF 1.0 (vertex cells); the index gives the times
-///   NAME_grid_000123.hdf, ...          nodal fields, VTKHDF image data, on request
+///   NAME_grid_000123.hdf, ...          nodal fields on the mesh of the grid's cells, on request
 ///   NAME.checkpoint                    the last complete state
 ///   summary.json
 #pragma once

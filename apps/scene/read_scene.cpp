@@ -53,6 +53,8 @@ FaceSpec read_faces(TableReader r, int dimension) {
       const toml::node* written = r.source().get(key);
       if (written && written->is_array()) {
         const std::vector<std::string> allowed(axis_names.begin(), axis_names.begin() + dimension);
+        if (written->as_array()->empty())
+          r.fail(*written, key, "must name a component; an open face is 'open'");
         for (const auto& component : r.texts(key, allowed))
           faces.fixed[axis][side] =
               static_cast<unsigned char>(faces.fixed[axis][side] | 1 << (component[0] - 'x'));
@@ -123,8 +125,8 @@ TimeShape read_time_function(TableReader r) {
   TimeShape shape;
   const int given = int(r.has("ramp")) + int(r.has("ramp_steps")) + int(r.has("step")) + int(r.has("table"));
   if (given > 1) {
-    const auto& first = *r.source().begin();
-    r.fail(first.second, std::string(first.first.str()), "give one of ramp, ramp_steps, step and table");
+    const auto first = r.source().begin();
+    r.fail(first->second, std::string(first->first.str()), "give one of ramp, ramp_steps, step and table");
   }
   if (r.has("ramp_steps")) {
     shape.ramp_steps = r.integer("ramp_steps", 1, 1'000'000'000'000LL, {}, "steps to full load");

@@ -156,6 +156,11 @@ void TableReader::fail(const toml::node& at, const std::string& key, const std::
 }
 
 void TableReader::missing(const std::string& key, const std::string& what) const {
+  for (const auto& [written, value] : *table_) {  // a misspelling is the likelier mistake
+    const std::string text(written.str());
+    if (std::find(known_.begin(), known_.end(), text) == known_.end() && !did_you_mean(text, {key}).empty())
+      unknown(written, value, {key});
+  }
   const bool written = static_cast<bool>(table_->source().begin);
   throw SceneError(fmt::format("{}: {} is missing: {}", written ? location(*table_) : *table_->source().path,
                                name(key), what));
@@ -339,21 +344,25 @@ std::vector<TableReader> TableReader::tables(const std::string& key) {
   return readers;
 }
 
+void TableReader::unknown(const toml::key& key, const toml::node& value,
+                          std::vector<std::string> known) const {
+  const auto& source = value.source();
+  const bool from_command_line = source.path && source.path->rfind("--set", 0) == 0;
+  const std::string text(key.str());
+  const std::string suggestion = did_you_mean(text, known);
+  std::sort(known.begin(), known.end());
+  throw SceneError(
+      fmt::format("{}: unknown key '{}'{}{} (allowed here: {})",
+                  from_command_line ? location(value)
+                                    : fmt::format("{}:{}:{}", source.path ? *source.path : "scene",
+                                                  key.source().begin.line, key.source().begin.column),
+                  text, path_.empty() ? "" : " in " + path_, suggestion, fmt::join(known, ", ")));
+}
+
 void TableReader::finish() const {
-  for (const auto& [key, value] : *table_) {
-    const std::string text(key.str());
-    if (std::find(known_.begin(), known_.end(), text) != known_.end()) continue;
-    const auto& source = value.source();
-    const bool from_command_line = source.path && source.path->rfind("--set", 0) == 0;
-    std::vector<std::string> allowed(known_);
-    std::sort(allowed.begin(), allowed.end());
-    throw SceneError(fmt::format(
-        "{}: unknown key '{}'{}{} (allowed here: {})",
-        from_command_line ? location(value)
-                          : fmt::format("{}:{}:{}", source.path ? *source.path : "scene",
-                                        key.source().begin.line, key.source().begin.column),
-        text, path_.empty() ? "" : " in " + path_, did_you_mean(text, known_), fmt::join(allowed, ", ")));
-  }
+  for (const auto& [key, value] : *table_)
+    if (std::find(known_.begin(), known_.end(), std::string(key.str())) == known_.end())
+      unknown(key, value, known_);
 }
 
 }  // namespace vsb::app

@@ -106,6 +106,9 @@ class TableReader {
 
   [[noreturn]] void fail(const toml::node& at, const std::string& key, const std::string& what) const;
   [[noreturn]] void missing(const std::string& key, const std::string& what) const;
+  /// Throws for a key that is none of the known ones.
+  [[noreturn]] void unknown(const toml::key& key, const toml::node& value,
+                            std::vector<std::string> known) const;
   /// The key with its table's path in front: "body[0].density".
   std::string name(const std::string& key) const;
   const toml::table& source() const { return *table_; }

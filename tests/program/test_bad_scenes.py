@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Bad input: exit code 2, a message that says where and what is allowed, and nothing written."""
+import math
+import re
+import time
+import tomllib
+import unittest
+
+from vsb_program import SCENES, ProgramTest, vsb
+
+GOOD = """\
+dimension = 2
+grid = { lower = [0.0, 0.0], upper = [4.0, 4.0], spacing = 0.5 }
+
+[[body]]
+name = "block"
+shape = { box = { lower = [1.0, 1.0], upper = [3.0, 3.0] } }
+particles_per_cell = 2
+density = 1000.0
+material = { youngs_modulus = 1e6, poisson_ratio = 0.3 }
+
+[[traction]]
+pressure = 1e3
+
+[time]
+kappa = 0.5
+steps = 10
+"""
+
+
+class BadScenes(ProgramTest):
+    def refuse(self, text, *words, command="run", line=None, extra=()):
+        """The scene is refused with a message that has all the words, names the line, and leaves no file behind."""
+        path = self.write(text)
+        out = self.folder / "results"
+        begun = time.monotonic()
+        done = vsb(command, path, *(("--out", out) if command == "run" else ()), *extra)
+        self.assertLess(time.monotonic() - begun, 30)  # a hang guard, not a timing
+        message = done.stderr
+        self.assertEqual(done.returncode, 2, f"{message}{done.stdout}\n{text}")
+        for word in words:
+            self.assertIn(word, message)
+        if line is not None:
+            self.assertRegex(message, rf"scene\.toml:{line}:\d+: ")
+        self.assertFalse(out.exists(), message)
+        return message
+
+    def changed(self, old, new):
+        self.assertEqual(GOOD.count(old), 1, old)
+        return GOOD.replace(old, new)
+
+    def test_the_good_scene_is_good(self):
+        self.run_scene(self.write(GOOD))
+
+    def test_1_unknown_key_with_a_suggestion(self):
+        self.refuse(self.changed("kappa = 0.5", "kapa = 0.5"), "unknown key 'kapa' in time", "did you mean 'kappa'", line=15)
+
+    def test_2_wrong_type(self):
+        self.refuse(self.changed("density = 1000.0", 'density = "heavy"'), "body[0].density", '(a string)', "> 0", line=8)
+
+    def test_3_out_of_range(self):
+        self.refuse(self.changed("poisson_ratio = 0.3", "poisson_ratio = 0.5"), "body[0].material.poisson_ratio = 0.5",
+                    "> -1 and < 0.5", line=9)
+
+    def test_4_not_a_number(self):
+        self.refuse(self.changed("kappa = 0.5", "kappa = nan"), "time.kappa = nan", "> 0 and <= 2", line=15)
+
+    def test_5_infinite(self):
+        self.refuse(self.changed("pressure = 1e3", "pressure = inf"), "traction[0].pressure = inf", line=12)
+
+    def test_6_missing_key(self):
+        self.refuse(self.changed("density = 1000.0\n", ""), "body[0].density is missing", "> 0")
+
+    def test_7_not_toml(self):
+        self.refuse(self.changed("steps = 10", "steps = = 10"), "scene.toml:16:")
+
+    def test_8_grid_that_is_no_whole_number_of_cells(self):
+        self.refuse(self.changed("spacing = 0.5", "spacing = 0.3"), "whole number of cells", line=2)
+
+    def test_9_unknown_shape(self):
+        self.refuse(self.changed("box =", "bax ="), "unknown shape 'bax'", "did you mean 'box'", line=6)
+
+    def test_10_empty_body(self):
+        self.refuse(self.changed("upper = [3.0, 3.0]", "upper = [1.01, 1.01]"), "body 'block' has no particle")
+
+    def test_11_overlapping_bodies(self):
+        body = GOOD[GOOD.index("[[body]]"):GOOD.index("[[traction]]")]
+        self.refuse(GOOD + body.replace('"block"', '"twin"'), "'twin' overlaps body 'block'")
+
+    def test_12_traction_without_a_boundary_node(self):
+        self.refuse(self.changed("pressure = 1e3", "pressure = 1e3\nsurface = { disc = { center = [2.0, 2.0], radius = 0.1 } }"),
+                    "finds no boundary node")
+        full = self.changed("{ box = { lower = [1.0, 1.0], upper = [3.0, 3.0] } }",
+                            "{ box = { lower = [0.0, 0.0], upper = [4.0, 4.0] } }")
+        self.refuse(full, "finds no boundary node")
+        self.refuse(full, "finds no boundary node", command="check")
+
+    def test_13_body_at_an_open_face_under_a_traction(self):
+        self.refuse(self.changed("lower = [1.0, 1.0], upper = [3.0, 3.0]", "lower = [0.0, 1.0], upper = [3.0, 3.0]"),
+                    "open face x_min")
+
+    def test_14_file_that_is_not_there(self):
+        done = vsb("run", self.folder / "nowhere.toml", "--out", self.folder / "results")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("nowhere.toml", done.stderr)
+
+    def test_15_contradictions(self):
+        self.refuse(self.changed("kappa = 0.5", "kappa = 0.5\ndt = 0.001"), "either dt or kappa")
+        self.refuse(self.changed("steps = 10", "steps = 10\nuntil_static = {}"), "either steps or until_static")
+        self.refuse(self.changed("pressure = 1e3", "pressure = 1e3\nstress = [1, 0, 0, 0, 0, 0]"), "not both")
+        self.refuse(self.changed("pressure = 1e3", "pressure = 1e3\ntime = { ramp = 1, step = 2 }"), "one of ramp")
+
+    def test_16_overrides_of_the_command_line(self):
+        for override, word in (("time.kapa=1", "did you mean 'kappa'"), ("time.kappa=9", "> 0 and <= 2"),
+                               ("body[7].density=1", "no element 7"), ("grid", "key=value"), ("time.kappa=[", "time.kappa")):
+            message = self.refuse(GOOD, word, extra=("--set", override))
+            self.assertIn("--set " + override, message)
+
+    def test_17_a_name_that_is_no_file_name(self):
+        self.refuse('name = "../up"\n' + GOOD, "name", line=1)
+
+
+class EveryKey(ProgramTest):
+    """Every key of the resolved scenes, misspelt and with values of the wrong kind."""
+
+    def leaves(self, table, path=""):
+        for key, value in table.items():
+            name = f"{path}.{key}" if path else key
+            if isinstance(value, dict) and key not in ("shape", "surface"):
+                yield from self.leaves(value, name)
+            elif isinstance(value, list) and value and isinstance(value[0], dict):
+                for i, item in enumerate(value):
+                    yield from self.leaves(item, f"{name}[{i}]")
+            else:
+                yield name, value
+
+    def refused(self, scene, override):
+        done = vsb("run", scene, "--out", self.folder / "results", "--set", override)
+        self.assertEqual(done.returncode, 2, f"{override}: {done.stdout}{done.stderr}")
+        self.assertIn("--set " + override, done.stderr)
+        key = re.split(r"[.=]", override)[0].split("[")[0]
+        self.assertIn(key, done.stderr)
+        self.assertFalse((self.folder / "results").exists(), override)
+
+    def test_wrong_values_and_misspellings(self):
+        tried = 0
+        for name in ("column", "cylinder"):
+            resolved = vsb("check", SCENES / f"{name}.toml")
+            self.assertEqual(resolved.returncode, 0, resolved.stderr)
+            scene = self.write(resolved.stdout, f"{name}.toml")
+            for key, value in self.leaves(tomllib.loads(resolved.stdout)):
+                bad = ["1979-05-27", "{ a = 1 }"]
+                if isinstance(value, bool):
+                    bad += ["1", '"true"']
+                elif isinstance(value, (int, float)):
+                    bad += ["nan", "inf", "-inf", '"text"', "true", "[]"]
+                elif isinstance(value, list) and value and isinstance(value[0], (int, float)):
+                    bad += ["[nan]", '["text"]', "[]", "[1, 2, 3, 4, 5, 6, 7]"]
+                elif isinstance(value, list):
+                    bad += ['["nonsense"]', "[1]", "3"]
+                else:
+                    bad += ["1.5", "[]"]
+                for text in bad:
+                    self.refused(scene, f"{key}={text}")
+                    tried += 1
+                self.refused(scene, f"{key}zz={'1' if not isinstance(value, str) else 'a'}")
+        self.assertGreater(tried, 200)
+
+    def test_numbers_out_of_range(self):
+        for override in ("dimension=4", "dimension=0", "grid.spacing=0", "grid.spacing=-1", "body[0].density=0",
+                         "body[0].particles_per_cell=0", "body[0].particles_per_cell=65",
+                         "body[0].material.youngs_modulus=0", "body[0].material.poisson_ratio=-1",
+                         "method.damping=1", "method.damping=-0.1", "time.dt=0", "time.dt=1e9", "time.steps=0",
+                         "traction[0].time.ramp_steps=0", "output.every=-1", "output.checkpoint_minutes=-1",
+                         "compare.length=0", "compare.traction=-1", "published[0].e_u=-1", "grid.spacing=1e-300"):
+            self.refused(SCENES / "column.toml", override)
+
+
+class CheckAndInfo(ProgramTest):
+    def resolved(self, path):
+        done = vsb("check", path)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        notes = [line for line in done.stdout.splitlines() if line.startswith("#")]
+        return notes, "\n".join(line for line in done.stdout.splitlines() if not line.startswith("#"))
+
+    def test_the_resolved_scene_parses_back_to_itself(self):
+        for path in sorted(SCENES.glob("*.toml")) + [self.write(GOOD)]:
+            notes, once = self.resolved(path)
+            _, twice = self.resolved(self.write(once, path.name))
+            self.assertEqual(once, twice)
+            self.assertIn("damping", tomllib.loads(once)["method"])
+            text = "\n".join(notes)
+            for word in ("particles", "boundary nodes", "dt =", "steps", "estimated time", "MB"):
+                self.assertIn(word, text)
+
+    def test_check_counts_and_writes_nothing(self):
+        before = sorted(p.name for p in self.folder.iterdir())
+        notes, _ = self.resolved(SCENES / "cylinder.toml")
+        self.assertIn("# 4824 particles, 20 boundary nodes", notes[0])
+        expected = 0.2 * 0.25 / math.sqrt(1e9 * 0.8 / (1.2 * 0.6) / 1e3)  # Eq. (29)
+        self.assertAlmostEqual(float(re.search(r"dt = ([\d.e+-]+) s", notes[1])[1]) / expected, 1, delta=1e-5)
+        self.assertEqual(before, sorted(p.name for p in self.folder.iterdir()))
+
+    def test_overrides_reach_the_scene(self):
+        done = vsb("check", SCENES / "column.toml", "--set", "time.dt=0.005", "--set", "grid.spacing=0.5",
+                   "--set", "title=two words", "--set", "body[0].density=2")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        scene = tomllib.loads(done.stdout)
+        self.assertEqual((scene["time"]["dt"], scene["grid"]["spacing"], scene["title"], scene["body"][0]["density"]),
+                         (0.005, 0.5, "two words", 2.0))
+
+    def test_info(self):
+        done = vsb("info")
+        self.assertEqual(done.returncode, 0)
+        for word in ("version", "commit", "kokkos", "backend", "instruction_set"):
+            self.assertRegex(done.stdout, rf"{word} +\S")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The README is true: its commands run, its scene is a scene, its C++ is that of a program that is built and run."""
+import re
+import subprocess
+import unittest
+
+from vsb_program import PROGRAM, ROOT, ProgramTest
+
+README = (ROOT / "README.md").read_text()
+# What this test runs inside of, and what configures the build that it is a part of.
+RUN_ELSEWHERE = ("./demo", "./check", "cmake --preset", "cmake --build")
+
+
+def blocks(language):
+    return re.findall(rf"^```{language}\n(.*?)^```", README, re.MULTILINE | re.DOTALL)
+
+
+class Readme(ProgramTest):
+    def test_commands_run_in_order(self):
+        (self.folder / "apps").symlink_to(ROOT / "apps")
+        (self.folder / "build" / "openmp" / "apps").mkdir(parents=True)
+        (self.folder / "build" / "openmp" / "apps" / "vsb").symlink_to(PROGRAM)
+        scene = blocks("toml")
+        self.assertEqual(len(scene), 1)
+        (self.folder / "notch.toml").write_text(scene[0])
+        ran = 0
+        for block in blocks("sh"):
+            for line in block.splitlines():
+                command = line.split("#")[0].strip()
+                if not command or command.startswith(RUN_ELSEWHERE):
+                    continue
+                done = subprocess.run(command, shell=True, cwd=self.folder, capture_output=True, text=True, timeout=600)
+                self.assertEqual(done.returncode, 0, f"{command}\n{done.stdout}{done.stderr}")
+                ran += 1
+        self.assertGreaterEqual(ran, 5)
+        self.assertTrue((self.folder / "results" / "notch" / "notch_fields.png").stat().st_size > 10_000)
+
+    def test_demo_and_check_are_what_runs_elsewhere(self):
+        for script in ("demo", "check", ".ci/run", "third_party/setup"):
+            self.assertTrue((ROOT / script).stat().st_mode & 0o100, script)
+        self.assertIn("./check", (ROOT / ".ci" / "run").read_text())
+        self.assertIn("build_preset openmp", (ROOT / "demo").read_text())
+
+    def test_cpp_is_that_of_the_consumer(self):
+        consumer = {line.strip() for line in (ROOT / "tests" / "consumer" / "consumer.cpp").read_text().splitlines()}
+        code = [line.strip() for block in blocks("cpp") for line in block.splitlines() if line.strip()]
+        self.assertGreaterEqual(len(code), 5)
+        for line in code:
+            self.assertIn(line, consumer)
+        self.assertTrue(any("vsb::step(Exec(), state, rock, basis, load, options)" in line for line in consumer))
+
+    def test_links_lead_somewhere(self):
+        for target in re.findall(r"\]\(([^)#]+)\)", README):
+            self.assertTrue((ROOT / target).exists(), target)
+        for path in re.findall(r"`((?:apps|tests|kernels|bench|third_party)/[\w./-]+)`", README):
+            self.assertTrue((ROOT / path).exists(), path)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the tests of the program share: running it, reading its results. VSB_PROGRAM names the program."""
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+import h5py
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SCENES = ROOT / "apps" / "scenes"
+PROGRAM = os.environ["VSB_PROGRAM"]
+
+
+def vsb(*arguments, program=PROGRAM, timeout=600, environment=None):
+    """Runs the program; returns the finished process with its texts."""
+    return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, timeout=timeout,
+                          env={**os.environ, **(environment or {})})
+
+
+class ProgramTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="vsb-test-")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def run_scene(self, scene, *arguments, out=None, **options):
+        """Runs a scene of the repository (by name) or a file; returns its summary."""
+        path = scene if isinstance(scene, pathlib.Path) else SCENES / f"{scene}.toml"
+        out = self.folder / (out or path.stem)
+        done = vsb("run", path, "--out", out, "--quiet", *arguments, **options)
+        self.assertEqual(done.returncode, 0, done.stderr + done.stdout)
+        return json.loads((out / "summary.json").read_text())
+
+    def write(self, text, name="scene.toml"):
+        path = self.folder / name
+        path.write_text(text)
+        return path
+
+
+def frames(directory):
+    """(file, time) of all particle frames, as the index lists them."""
+    index = [i for i in pathlib.Path(directory).glob("*.hdf.series") if not i.name.endswith("_grid.hdf.series")]
+    assert len(index) == 1, index
+    return [(index[0].parent / f["name"], f["time"]) for f in json.loads(index[0].read_text())["files"]]
+
+
+def last_fields(directory):
+    """The fields of the last frame, the points as `position`."""
+    with h5py.File(frames(directory)[-1][0]) as file:
+        fields = {name: data[()] for name, data in file["VTKHDF/PointData"].items()}
+        fields["position"] = file["VTKHDF/Points"][()]
+    return fields
