@@ -2,7 +2,8 @@
 /// \file
 /// How far a state is from equilibrium, and the resultant of its tractions.
 ///   unbalanced U = |f| over free components;   internal I = |f| without virtual stress, over all components;
-///   force ratio U / I;   net force = sum_I (f_I with - f_I without virtual stress);
+///   force ratio U / I;   net force = sum_I (f_I with - f_I without virtual stress),
+///   over free components: what acts on a prescribed one is the support's;
 ///   kinetic energy sum_I |p_I|^2 / (2 m_I);   strain energy scale sum_p V |sigma|^2 / (2 M).
 /// The kinetic energy is the grid's: velocities of FLIP particles that cancel at every node move nothing, and
 /// no damping ever reaches them.
@@ -17,7 +18,7 @@ template <int Dim>
 struct Balance {
   double unbalanced_force;        ///< N
   double internal_force;          ///< N
-  Vector<Dim, double> net_force;  ///< resultant of the virtual stress on all nodes, N
+  Vector<Dim, double> net_force;  ///< resultant of the virtual stress, N
   double kinetic_energy;          ///< J
   double strain_energy;           ///< J, the scale above
 
@@ -41,7 +42,7 @@ struct NodeBalance {
       if (!fixed) sum[0] += f * f;
       sum[1] += g * g;
       if (!fixed && m > 0) sum[2] += 0.5 * p * p / m;
-      sum[3 + i] += f - g;
+      if (!fixed) sum[3 + i] += f - g;
     }
   }
 };

@@ -78,8 +78,8 @@ struct UniformGrid {
   KOKKOS_FUNCTION bool contains(const Vector<Dim, Real>& x) const {
     const auto q = in_cells(x);
     for (int i = 0; i < Dim; ++i) {
-      const Real n = static_cast<Real>(cells[i]);
-      const Real round_off = 16 * n * std::numeric_limits<Real>::epsilon();
+      constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
+      const Real n = static_cast<Real>(cells[i]), round_off = 16 * n * epsilon;
       if (!(q[i] >= -round_off && q[i] <= n + round_off)) return false;
     }
     return true;

@@ -132,6 +132,9 @@ macro(vsb_build_kokkos tree)
   set(CMAKE_WARN_DEPRECATED ON)
   set(CMAKE_MESSAGE_LOG_LEVEL "${CMAKE_MESSAGE_LOG_LEVEL_before}")
   get_directory_property(vsb_kokkos_version DIRECTORY "${tree}" DEFINITION Kokkos_VERSION)
+  if(vsb_kokkos_version VERSION_LESS 4)  # relies on an include that libstdc++ 13 dropped
+    target_compile_options(kokkoscore PUBLIC "SHELL:-include cstdint")
+  endif()
   get_directory_property(vsb_kokkos_devices DIRECTORY "${tree}" DEFINITION KOKKOS_ENABLED_DEVICES)
 endmacro()
 

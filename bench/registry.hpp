@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Names, registration and the timed loop of the benchmarks. A name reads
+///   what / dimension / number type / size / [scatter strategy] / [load],
+/// for example step/3d/double/80k_ppc8/gathered/vsb_off.
+#pragma once
+
+#include "checks.hpp"
+#include "clock.hpp"
+#include "traffic.hpp"
+
+#include <benchmark/benchmark.h>
+
+namespace vsb::bench {
+
+/// What runs without arguments: the column of 80,000 particles, 8 per cell, in 3D.
+constexpr const char* default_filter = "/3d/.*/80k_ppc8";
+
+template <int Dim>
+std::vector<Size> sizes() {
+  if constexpr (Dim == 1) return {{"76_ppc2", 1, 38, 2}, {"80k_ppc2", 1, 40000, 2}};
+  if constexpr (Dim == 2) return {{"100k_ppc4", 50, 500, 2}, {"80k_ppc16", 22, 227, 4}};
+  if constexpr (Dim == 3)
+    return {{"10k_ppc8", 5, 50, 2},
+            {"80k_ppc8", 10, 100, 2},
+            {"640k_ppc8", 20, 200, 2},
+            {"80k_ppc64", 5, 50, 4},
+            {"640k_ppc64", 10, 100, 4}};
+}
+
+/// Calls work(dimension, real, size) for all scenes; the first two arguments carry a constant and a type.
+template <class Work>
+void for_each_scene(const Work& work) {
+  const auto with_size = [&](auto dimension, auto real) {
+    for (const auto& size : sizes<decltype(dimension)::value>()) work(dimension, real, size);
+  };
+  const auto with_real = [&](auto dimension) {
+    with_size(dimension, double());
+    with_size(dimension, float());
+  };
+  with_real(std::integral_constant<int, 1>());
+  with_real(std::integral_constant<int, 2>());
+  with_real(std::integral_constant<int, 3>());
+}
+
+inline std::vector<Scatter> strategies() {
+  if (std::is_same<typename Device::memory_space, Kokkos::HostSpace>::value)
+    return {Scatter::gathered, Scatter::duplicated, Scatter::atomic};
+  return {Scatter::gathered, Scatter::atomic};
+}
+
+inline std::string name(Scatter s) {
+  return s == Scatter::gathered ? "/gathered" : s == Scatter::duplicated ? "/duplicated" : "/atomic";
+}
+inline std::string name(Load load) {
+  return load == Load::off ? "/vsb_off" : load == Load::end_face ? "/vsb_end" : "/vsb_all";
+}
+template <int Dim, class Real>
+std::string scene_name(const Size& size) {
+  return "/" + std::to_string(Dim) + "d/" + (sizeof(Real) == 4 ? "float/" : "double/") + size.name;
+}
+
+template <class Function>
+benchmark::internal::Benchmark* add(const std::string& full_name, const Function& function) {
+  auto* added = benchmark::RegisterBenchmark(full_name.c_str(), function)->Unit(benchmark::kMillisecond);
+  return works_elsewhere() ? added->UseRealTime() : added;
+}
+
+/// The timed loop: `run` and a fence, unless `findings` says what is wrong.
+template <class Run>
+void time(benchmark::State& state, const std::string& findings, int particles, double bytes_per_particle,
+          const Run& run) {
+  if (!findings.empty()) {
+    state.SkipWithError(findings.c_str());
+    return;
+  }
+  const Exec exec;
+  const double start = now();
+  for (auto _ : state) {
+    run();
+    exec.fence();
+  }
+  const double seconds = (now() - start) / static_cast<double>(state.iterations());
+  state.counters["ns_per_particle_step"] = 1e9 * seconds / particles;
+  state.counters["bytes_per_particle"] = bytes_per_particle;
+}
+
+void register_kernels();
+void register_steps();
+void register_extra_cost();
+
+}  // namespace vsb::bench

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// The scene of all benchmarks: the column of the paper's Table 3, 10 m long, fixed at its lower end, in a
+/// grid with one layer of void cells beyond every free face.
+///
+/// Particles lie on a lattice, each jittered within its cell; velocities and stresses are random with a fixed
+/// seed, so that no number is zero or denormal. Loads and gravity are so small that no particle ever leaves
+/// its cell: every step does the same work.
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <string>
+#include <type_traits>
+#include <vector>
+#include <vsb/kernels/step.hpp>
+#include <vsb/physics/linear_basis.hpp>
+
+namespace vsb::bench {
+
+#if defined(VSB_BACKEND_CUDA)
+using Exec = Kokkos::Cuda;
+#elif defined(VSB_BACKEND_OPENMP)
+using Exec = Kokkos::OpenMP;
+#else
+using Exec = Kokkos::Serial;
+#endif
+using Device = Exec::device_type;
+
+/// Where the virtual stress acts.
+enum class Load { off, end_face, free_faces };
+
+/// How fine the column is.
+struct Size {
+  const char* name;
+  int cells_across;   ///< in each direction across the column
+  int cells_along;    ///< over its length
+  int per_direction;  ///< particles per cell and direction
+};
+
+template <int Dim>
+int particle_count(const Size& size) {
+  int n = size.cells_along * size.per_direction;
+  for (int i = 1; i < Dim; ++i) n *= size.cells_across * size.per_direction;
+  return n;
+}
+
+template <int Dim, class Real>
+struct Scene {
+  static constexpr double length = 10;     ///< m
+  static constexpr double density = 1000;  ///< kg/m^3
+  static constexpr int axis = Dim - 1;     ///< the direction of the length; the lower end is at node 0
+  Size size;
+  Load load;
+  LinearBasis<Dim, Real> basis;
+  ParticleBlock<Dim, Real, Device> block;
+  State<Dim, Real, Device> state;
+  std::vector<Body<Real>> bodies;
+  StepOptions<Dim, Real> options;
+  double pressure;                                 ///< Pa, positive in compression
+  UniformVirtualStress<Dim, Real> virtual_stress;  ///< -pressure I
+
+  double spacing() const { return length / size.cells_along; }
+  double end_face_area() const {
+    double area = 1;
+    for (int i = 1; i < Dim; ++i) area *= size.cells_across * spacing();
+    return area;
+  }
+};
+
+/// Random numbers in [-1, 1), the same with every standard library.
+class Noise {
+ public:
+  double operator()() { return static_cast<double>(engine_()) / 2147483648.0 - 1; }
+
+ private:
+  std::mt19937 engine_{20261122};
+};
+
+template <int Dim, class Real>
+LinearBasis<Dim, Real> make_basis(const Size& size) {
+  const Real h = static_cast<Real>(Scene<Dim, Real>::length / size.cells_along);
+  Vector<Dim, Real> lower, spacing;
+  Vector<Dim, int> cells;
+  for (int i = 0; i < Dim; ++i) {
+    const bool along = i == Scene<Dim, Real>::axis;
+    lower[i] = along ? Real(0) : -h;
+    spacing[i] = h;
+    cells[i] = along ? size.cells_along + 1 : size.cells_across + 2;
+  }
+  return {UniformGrid<Dim, Real>(lower, spacing, cells)};
+}
+
+/// Fills the particles; `strain` is the size of the random state, the strain of its stress.
+template <int Dim, class Real>
+void fill_particles(const Scene<Dim, Real>& scene, double strain, double youngs_modulus, double wave_speed) {
+  const auto host = host_copy(scene.block);
+  const auto& p = host.particles;
+  const int across = scene.size.cells_across * scene.size.per_direction;
+  const double distance = scene.spacing() / scene.size.per_direction, jitter = 0.3 * distance;
+  double volume = 1;
+  for (int i = 0; i < Dim; ++i) volume *= distance;
+  Noise noise;
+  for (int n = 0; n < p.count(); ++n) {
+    int k = n;
+    for (int i = 0; i < Dim; ++i) {
+      const int place = i == scene.axis ? k : k % across;
+      k /= across;
+      p.position(n, i) = static_cast<Real>((place + 0.5) * distance + jitter * noise());
+      p.velocity(n, i) = static_cast<Real>(strain * wave_speed * noise());
+    }
+    p.volume(n) = static_cast<Real>(volume);
+    p.mass(n) = static_cast<Real>(scene.density * volume);
+    for (int c = 0; c < p.stress_size; ++c)
+      p.cauchy_stress(n, c) = static_cast<Real>(strain * youngs_modulus * noise());
+  }
+  Kokkos::deep_copy(scene.block.block, host.block);
+}
+
+/// Fixes the nodes of the lower end, and declares the traction where the load acts: at all nodes, or at the
+/// end face and the layer of nodes below it, which is N1 of a load on that face alone.
+template <int Dim, class Real>
+void fill_nodes(const Scene<Dim, Real>& scene) {
+  const auto fixed = Kokkos::create_mirror_view(scene.state.nodes.fixed_components);
+  const auto tractions = Kokkos::create_mirror_view(scene.state.occupancy.tractions);
+  for (int node = 0; node < scene.basis.node_count(); ++node) {
+    const auto I = static_cast<size_t>(node);
+    const int layer = scene.basis.grid.node_coordinates(node)[scene.axis];
+    fixed(I) = layer == 0 ? ComponentMask((1 << Dim) - 1) : ComponentMask(0);
+    tractions(I) = scene.load == Load::free_faces ||
+                   (scene.load == Load::end_face && layer >= scene.size.cells_along - 1);
+  }
+  Kokkos::deep_copy(scene.state.nodes.fixed_components, fixed);
+  Kokkos::deep_copy(scene.state.occupancy.tractions, tractions);
+}
+
+/// Lets a load act on the column.
+template <int Dim, class Real>
+void apply_load(Scene<Dim, Real>& scene, Load load) {
+  scene.load = load;
+  fill_nodes(scene);
+  auto& o = scene.state.occupancy;
+  o.boundary_node_count =
+      mark_boundary_nodes(Exec(), scene.state.particles, o.cells, scene.basis.grid, o.tractions, o.boundary);
+}
+
+/// The column at rest but for noise, with its occupancy up to date.
+template <int Dim, class Real>
+Scene<Dim, Real> make_scene(const Size& size, Load load, Scatter strategy) {
+  const double E = 1e6, nu = 0.3;
+  const auto material = LinearElastic<Real>::from_young(E, nu);
+  const double M = static_cast<double>(material.constrained_modulus());
+  Scene<Dim, Real> s;
+  s.size = size;
+  s.basis = make_basis<Dim, Real>(size);
+  s.block = allocate_particles<Dim, Real, Device>(particle_count<Dim>(size));
+  s.state = make_state(s.block.particles, s.basis);
+  s.bodies = {{0, particle_count<Dim>(size), material}};
+  const double strain = 1e-3 * s.spacing() / s.length;  // moves the free end by 0.001 cells
+  s.pressure = strain * E;
+  s.options.dt = static_cast<Real>(time_step(0.2, s.spacing(), M, s.density));
+  s.options.damping = Real(0.05);
+  s.options.gravity[s.axis] = static_cast<Real>(-strain * E / (s.density * s.length));
+  s.options.scatter = strategy;
+  s.virtual_stress.stress[0] = pressure_stress<Dim>(static_cast<Real>(s.pressure));
+  s.virtual_stress.count = 1;
+  fill_particles(s, strain, E, math::sqrt(M / s.density));
+  update_occupancy(Exec(), s.state.particles, s.state.occupancy, s.basis);
+  apply_load(s, load);
+  return s;
+}
+
+/// Calls work(field) with the virtual stress field of the scene's load.
+template <int Dim, class Real, class Work>
+auto with_field(const Scene<Dim, Real>& scene, const Work& work) {
+  return scene.load == Load::off ? work(NoVirtualStress{}) : work(scene.virtual_stress);
+}
+
+}  // namespace vsb::bench

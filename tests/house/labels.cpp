@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Every kernel, region and allocation carries a label that starts with "vsb::", so that profilers name them.
+#include <algorithm>
+#include <set>
+#include <vsb/kernels/balance.hpp>
+#include <vsb/kernels/flag_boundary_particles.hpp>
+#include <vsb/kernels/health.hpp>
+
+#include "support.hpp"
+
+using namespace vsb;
+using namespace vsb::test;
+
+namespace {
+
+namespace tools = Kokkos::Tools::Experimental;
+
+/// What Kokkos reported, each as "kind: label".
+std::set<std::string> seen;
+
+void note(const char* kind, const std::string& label) {
+  seen.insert(std::string(kind) + ": " + label);
+}
+
+/// Collects labels for its lifetime.
+class Listener {
+ public:
+  Listener() {
+    seen.clear();
+    before_ = tools::get_callbacks();
+    tools::set_begin_parallel_for_callback([](const char* name, uint32_t, uint64_t*) { note("for", name); });
+    tools::set_begin_parallel_reduce_callback(
+        [](const char* name, uint32_t, uint64_t*) { note("reduce", name); });
+    tools::set_begin_parallel_scan_callback(
+        [](const char* name, uint32_t, uint64_t*) { note("scan", name); });
+    tools::set_push_region_callback([](const char* name) { note("region", name); });
+    tools::set_allocate_data_callback([](Kokkos_Profiling_SpaceHandle, const char* name, const void*,
+                                         uint64_t) { note("allocation", name); });
+  }
+  ~Listener() { tools::set_callbacks(before_); }
+  Listener(const Listener&) = delete;
+  Listener& operator=(const Listener&) = delete;
+
+ private:
+  tools::EventSet before_;
+};
+
+/// Whether a report is ours or Kokkos's own; where the latter names a View, "Kokkos::...[label]", that must
+/// be ours.
+bool in_order(const std::string& report) {
+  const std::string label = report.substr(report.find(": ") + 2);
+  if (label.rfind("vsb::", 0) == 0) return true;
+  if (label.rfind("Kokkos::", 0) != 0) return false;
+  const auto bracket = label.find('[');
+  return bracket == std::string::npos || label.compare(bracket + 1, 5, "vsb::") == 0;
+}
+
+template <int Dim>
+void run_everything(Scatter strategy) {
+  const auto grid = make_grid<Dim, double>({{8, 8, 8}});
+  const LinearBasis<Dim, double> basis{grid};
+  const auto block = allocate_particles<Dim, double, Device>(64);
+  edit(block, [&](const auto& particles) {
+    Random random(81);
+    for (int p = 0; p < 64; ++p) {
+      const auto x = random_point(grid, random);
+      for (int i = 0; i < Dim; ++i) particles.position(p, i) = x[i];
+      particles.mass(p) = particles.volume(p) = 1;
+    }
+  });
+  auto state = make_state(block.particles, basis);
+  Kokkos::deep_copy(state.occupancy.tractions, 1u);
+  const std::vector<Body<double>> bodies{{0, 32, LinearElastic<double>::from_young(1, 0.3)},
+                                         {32, 64, LinearElastic<double>::from_young(2, 0.3)}};
+  UniformVirtualStress<Dim, double> pressure;
+  pressure.count = 1;
+  pressure.stress[0] = pressure_stress<Dim>(1e-3);
+  StepOptions<Dim, double> options;
+  options.dt = 1e-4;
+  options.scatter = strategy;
+  for (const VolumeUpdate& update : {VolumeUpdate(DeterminantVolume{}), VolumeUpdate(ExponentialVolume{})}) {
+    options.volume_update = update;
+    REQUIRE(step(Exec(), state, bodies, basis, pressure, options) == -1);
+    REQUIRE(step(Exec(), state, bodies, basis, NoVirtualStress{}, options) == -1);
+  }
+  balance(Exec(), state, bodies, basis, pressure, options);
+  REQUIRE(find_invalid(Exec(), block.particles).particle == -1);
+  edit(block, [](const auto& particles) { particles.volume(0) = -1; });
+  REQUIRE(find_invalid(Exec(), block.particles).particle == 0);
+  const Kokkos::View<unsigned char*, Device> flag("vsb::flag", 64);
+  flag_boundary_particles(Exec(), block.particles, state.occupancy.boundary, basis, flag);
+}
+
+}  // namespace
+
+TEST_CASE("every label starts with vsb::") {
+  {
+    const Listener listener;
+    for (const Scatter strategy : {Scatter::atomic, Scatter::duplicated, Scatter::gathered}) {
+      if (strategy == Scatter::duplicated && !std::is_same_v<Device::memory_space, Kokkos::HostSpace>)
+        continue;
+      run_everything<1>(strategy);
+      run_everything<2>(strategy);
+      run_everything<3>(strategy);
+    }
+  }
+  for (const auto& report : seen) {
+    CAPTURE(report);
+    CHECK(in_order(report));
+  }
+  // The listener did listen.
+  for (const char* report :
+       {"region: vsb::step", "for: vsb::particles_to_grid", "for: vsb::particles_to_grid/nodes",
+        "reduce: vsb::locate_particles", "reduce: vsb::mark_boundary_nodes", "reduce: vsb::find_invalid",
+        "scan: vsb::scan_offsets", "for: vsb::update_stress", "for: vsb::node_balance",
+        "allocation: vsb::particles", "allocation: vsb::bin_sums"}) {
+    CAPTURE(report);
+    CHECK(seen.count(report) == 1);
+  }
+}
+
+TEST_CASE("a label of another kind would be found") {
+  {
+    const Listener listener;
+    const Kokkos::View<int*, Device> view("mine", 3);
+    Kokkos::parallel_for(Kokkos::RangePolicy<Exec>(0, 1),
+                         kernel::SortBin<Device>{allocate_bins<Device>(1, 1)});
+  }
+  CHECK(std::count_if(seen.begin(), seen.end(), in_order) < static_cast<int>(seen.size()) - 1);
+}

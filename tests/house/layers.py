@@ -1,0 +1,72 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""layers.py ROOT: the rooms include only what they may, and nothing names the package hosts of one machine.
+
+  views    the standard library, Kokkos, views
+  physics  the standard library, Kokkos_Complex, physics, and of views what describes a point (POINT_VIEWS)
+  kernels  the standard library, Kokkos, kernels, physics, views
+The programs' libraries (files, command line, formats) live in apps alone, so the above rules them out here.
+"""
+import os
+import pathlib
+import re
+import sys
+
+POINT_VIEWS = ("tensor", "kokkos_compat", "masks", "pack")
+STANDARD = r"[a-z_]+"  # <vector>; other libraries' headers have a folder, a suffix or a capital letter
+ALLOWED = {
+    "views": [STANDARD, r"Kokkos_\w+\.hpp", r"vsb/views/\w+\.hpp"],
+    "physics": [STANDARD, r"Kokkos_Complex\.hpp", r"vsb/physics/\w+\.hpp",
+                rf"vsb/views/({'|'.join(POINT_VIEWS)})\.hpp"],
+    "kernels": [STANDARD, r"Kokkos_\w+\.hpp", r"vsb/(kernels|physics|views)/\w+\.hpp"],
+}
+INCLUDE = re.compile(r'^\s*#\s*include\s*(["<].*)$', re.MULTILINE)
+TEXT = (".hpp", ".cpp", ".py", ".sh", ".cmake", ".txt", ".toml", ".json", ".md", ".yml", ".yaml", ".cff", ".in", "")
+SKIPPED = {".git", "build", "results", "third_party", "__pycache__"}
+
+
+def include_violations(root):
+    found, files = [], 0
+    for room, patterns in ALLOWED.items():
+        for path in sorted((root / room).rglob("*")):
+            if not path.is_file():
+                continue
+            files += 1
+            for what in INCLUDE.findall(path.read_text()):
+                name = re.match(r'<([^>]+)>', what)
+                if not name or not any(re.fullmatch(pattern, name.group(1)) for pattern in patterns):
+                    found.append(f"{path.relative_to(root)}: '#include {what.strip()}' is not for {room}")
+    if files < 20:
+        found.append(f"only {files} headers under {root}: is that the top of the tree?")
+    return found
+
+
+def package_hosts():
+    """Hosts that this machine is told to fetch packages from (apt, and the environment's registries)."""
+    sources = pathlib.Path("/etc/apt")
+    texts = [path.read_text(errors="replace") for path in sources.rglob("*")
+             if path.suffix in (".list", ".sources") and os.access(path, os.R_OK)]
+    texts += [value for name, value in os.environ.items() if re.search(r"INDEX_URL|REGISTRY|PROXY$", name.upper())]
+    hosts = {host for text in texts for host in re.findall(r"://(?:[^/@\s]*@)?([\w.-]+\.[a-zA-Z]\w+)", text)}
+    return hosts
+
+
+def host_violations(root):
+    hosts = package_hosts()
+    found = []
+    for directory, folders, names in os.walk(root):
+        folders[:] = [folder for folder in folders if folder not in SKIPPED]
+        for path in (pathlib.Path(directory, name) for name in names):
+            if path.suffix not in TEXT:
+                continue
+            text = path.read_text(errors="replace")
+            found += [f"{path.relative_to(root)}: names the package host {host}" for host in hosts if host in text]
+    return found
+
+
+root = pathlib.Path(sys.argv[1])
+violations = include_violations(root) + host_violations(root)
+for violation in violations:
+    print(violation)
+print(f"layers: {len(violations)} violations")
+sys.exit(1 if violations else 0)
