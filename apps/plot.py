@@ -228,6 +228,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("directory", help="results directory of one run")
     parser.add_argument("--step", type=int, help="step of the frame to draw (default: the last)")
+    parser.add_argument("--dpi", type=int, default=200, help="dots per inch of the pictures (default: 200)")
     arguments = parser.parse_args()
     frame = Frame(arguments.directory, arguments.step)
     if not frame.has("cauchy_stress", "displacement", "volume"):
@@ -240,7 +241,7 @@ def main():
     for kind, draw in drawings.items():
         path = frame.directory / f"{frame.name}_{kind}.png"
         figure = draw(frame)
-        figure.savefig(path)
+        figure.savefig(path, dpi=arguments.dpi)
         plt.close(figure)
         print(path)
 

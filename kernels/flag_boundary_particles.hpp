@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Which particles contribute to a node at which a traction acts: flag_p = 1 if chi_I != 0 at a support node of p.
+/// Which particles contribute to a node at which a traction acts: flag_p = 1 if chi_I != 0 at a support node
+/// of p.
 #pragma once
 
 #include <vsb/views/nodes.hpp>
@@ -32,8 +33,9 @@ template <class Exec, class Basis, int Dim, class Real, class Device>
 void flag_boundary_particles(const Exec& exec, const Particles<Dim, Real, Device>& particles,
                              const BoundaryNodes<Device>& boundary, const Basis& basis,
                              const Kokkos::View<unsigned char*, Device>& flag) {
-  Kokkos::parallel_for("vsb::flag_boundary_particles", Kokkos::RangePolicy<Exec>(exec, 0, particles.count()),
-                       kernel::FlagBoundaryParticle<Basis, Dim, Real, Device>{particles, boundary, basis, flag});
+  Kokkos::parallel_for(
+      "vsb::flag_boundary_particles", Kokkos::RangePolicy<Exec>(exec, 0, particles.count()),
+      kernel::FlagBoundaryParticle<Basis, Dim, Real, Device>{particles, boundary, basis, flag});
 }
 
 }  // namespace vsb

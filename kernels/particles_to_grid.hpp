@@ -35,25 +35,35 @@ struct ParticlesToGrid {
     const Real m = particles.mass(p), V = particles.volume(p);
     const auto shape = basis.shape(x);
 
-    auto stress = sigma;            // sigma - chi sbar
-    auto body_force = m * gravity;  // m b + chi V fbar
-    [[maybe_unused]] TractionMask chi = 0;
-    for (int a = 0; a < Basis::support; ++a) {
-      const int I = shape.node[a];
-      if constexpr (Field::loaded) {
-        if (boundary(I) != chi) {
-          chi = boundary(I);
-          const auto bar = virtual_stress.at(x, chi);
-          stress = sigma - bar.stress;
-          body_force = m * gravity + V * bar.divergence;
-        }
-      }
+    // Adds what node a gets: `stress` is sigma - chi sbar, `body_force` is m b + chi V fbar.
+    const auto add = [&](int a, const auto& stress, const auto& body_force) {
       const auto f = shape.N[a] * body_force - V * (stress * shape.dN[a]);
       const Real Nm = shape.N[a] * m;
-      sink(a, I, 0) += Nm;
-      for (int i = 0; i < Dim; ++i) sink(a, I, 1 + i) += Nm * v[i];
-      for (int i = 0; i < Dim; ++i) sink(a, I, 1 + Dim + i) += f[i];
+      sink(a, shape.node[a], 0) += Nm;
+      for (int i = 0; i < Dim; ++i) sink(a, shape.node[a], 1 + i) += Nm * v[i];
+      for (int i = 0; i < Dim; ++i) sink(a, shape.node[a], 1 + Dim + i) += f[i];
+    };
+    if constexpr (Field::loaded) {
+      // Most particles have no node of N1 and take the short way out.
+      TractionMask any = 0;
+      for (int a = 0; a < Basis::support; ++a) any |= boundary(shape.node[a]);
+      if (any != 0) {
+        auto stress = sigma;
+        auto body_force = m * gravity;
+        TractionMask chi = 0;
+        for (int a = 0; a < Basis::support; ++a) {
+          if (boundary(shape.node[a]) != chi) {
+            chi = boundary(shape.node[a]);
+            const auto bar = virtual_stress.at(x, chi);
+            stress = sigma - bar.stress;
+            body_force = m * gravity + V * bar.divergence;
+          }
+          add(a, stress, body_force);
+        }
+        return;
+      }
     }
+    for (int a = 0; a < Basis::support; ++a) add(a, sigma, m * gravity);
   }
 };
 

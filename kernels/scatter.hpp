@@ -4,11 +4,12 @@
 ///
 /// A contribution is a functor with `columns` and operator()(p, sink): for every support node a of particle p
 /// it adds to sink(a, node, c), c < columns. It is the same functor in all three ways:
-///   atomic      Kokkos scatter view, one target, atomic additions: little memory; the last bits vary from
-///   run to run; duplicated  Kokkos scatter view, one target per thread, added up at the end: the last bits
-///   vary with the threads; gathered    sums per bin in increasing particle number, then per node in fixed
-///   order over its bins: the same bits
-///               for any number of threads and any backend. Needs bins sorted by sort_by_bin.
+/// - atomic: Kokkos scatter view, one target, atomic additions. Little memory; the last bits vary from run to
+///   run.
+/// - duplicated: Kokkos scatter view, one target per thread, added up at the end. The last bits vary with the
+///   number of threads.
+/// - gathered: sums per bin in increasing particle number, then per node in fixed order over its bins. The
+///   same bits for any number of threads and any backend. Needs bins sorted by sort_by_bin.
 #pragma once
 
 #include <Kokkos_ScatterView.hpp>

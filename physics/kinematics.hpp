@@ -22,17 +22,19 @@ KOKKOS_INLINE_FUNCTION SymmetricTensor<Dim, T> strain_increment(const Matrix<Dim
 /// dt (w sigma - sigma w) with the spin w = skew(L): what the Jaumann rate adds to a stress increment, so
 /// that the stress turns with the material.
 template <int Dim, class T>
-KOKKOS_INLINE_FUNCTION SymmetricTensor<Dim, T> jaumann_rotation(const SymmetricTensor<Dim, T>& sigma,
-                                                                const Matrix<Dim, T>& L, T dt) {
+KOKKOS_FORCEINLINE_FUNCTION SymmetricTensor<Dim, T> jaumann_rotation(const SymmetricTensor<Dim, T>& sigma,
+                                                                     const Matrix<Dim, T>& L, T dt) {
   auto r = SymmetricTensor<Dim, T>::zero();
   if constexpr (Dim > 1) {
-    Matrix<Dim, T> w;
+    auto A = Matrix<Dim, T>::zero();  // dt w sigma; -dt sigma w is its transpose
     for (int i = 0; i < Dim; ++i)
-      for (int j = 0; j < Dim; ++j) w(i, j) = T(0.5) * dt * (L(i, j) - L(j, i));
+      for (int k = 0; k < Dim; ++k) {
+        if (i == k) continue;
+        const T w = T(0.5) * dt * (L(i, k) - L(k, i));
+        for (int j = 0; j < Dim; ++j) A(i, j) += w * sigma(k, j);
+      }
     for (int i = 0; i < Dim; ++i)
-      for (int j = i; j < Dim; ++j)
-        for (int k = 0; k < Dim; ++k)
-          r[symmetric_index(i, j)] += w(i, k) * sigma(k, j) - sigma(i, k) * w(k, j);
+      for (int j = i; j < Dim; ++j) r[symmetric_index(i, j)] = A(i, j) + A(j, i);
   }
   return r;
 }

@@ -23,7 +23,7 @@ struct LinearBasis {
 
   /// The basis functions at x, which must lie in the grid. Support node a is the cell's corner whose position
   /// in direction i is bit i of a.
-  KOKKOS_FUNCTION Shape<Dim, support, Real> shape(const Vector<Dim, Real>& x) const {
+  KOKKOS_FORCEINLINE_FUNCTION Shape<Dim, support, Real> shape(const Vector<Dim, Real>& x) const {
     const auto q = grid.in_cells(x);
     const auto cell = grid.cell_of(q);
     const int lowest = grid.node_index(cell);

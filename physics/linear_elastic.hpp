@@ -32,8 +32,8 @@ struct LinearElastic {
 
   /// The stress at the end of a step of length dt with velocity gradient L.
   template <int Dim, class T>
-  KOKKOS_FUNCTION SymmetricTensor<Dim, T> advance(const SymmetricTensor<Dim, T>& sigma,
-                                                  const Matrix<Dim, T>& L, T dt) const {
+  KOKKOS_FORCEINLINE_FUNCTION SymmetricTensor<Dim, T> advance(const SymmetricTensor<Dim, T>& sigma,
+                                                              const Matrix<Dim, T>& L, T dt) const {
     const auto de = strain_increment(L, dt);
     auto s = sigma + jaumann_rotation(sigma, L, dt) + T(2 * shear_modulus) * de;
     const T isotropic = T(lambda) * dt * trace(L);

@@ -17,7 +17,7 @@ struct Shape {
 
   /// sum_I N_I f(I), Eq. (8); `field` maps a node number to a Vector.
   template <class Field>
-  KOKKOS_FUNCTION Vector<Dim, T> interpolate(const Field& field) const {
+  KOKKOS_FORCEINLINE_FUNCTION Vector<Dim, T> interpolate(const Field& field) const {
     Vector<Dim, T> value = Vector<Dim, T>::zero();
     for (int a = 0; a < Support; ++a)
       for (int i = 0; i < Dim; ++i) value[i] += N[a] * field(node[a], i);
@@ -26,7 +26,7 @@ struct Shape {
 
   /// sum_I f(I) (x) grad N_I: the gradient G(i, j) = d f_i / d x_j of the interpolated field.
   template <class Field>
-  KOKKOS_FUNCTION Matrix<Dim, T> gradient(const Field& field) const {
+  KOKKOS_FORCEINLINE_FUNCTION Matrix<Dim, T> gradient(const Field& field) const {
     Matrix<Dim, T> g = Matrix<Dim, T>::zero();
     for (int a = 0; a < Support; ++a)
       for (int i = 0; i < Dim; ++i)

@@ -11,7 +11,7 @@
 namespace vsb {
 
 /// A bundle of Views, one row per particle. The Views are strided, so that they wrap arrays of any layout:
-/// assign to them Views of one's own arrays (see make_unmanaged_field), or take them from allocate_particles.
+/// assign to them what `wrap` makes of one's own arrays, or take them from allocate_particles.
 /// Copying the bundle copies no data.
 template <int Dim, class Real, class Device>
 struct Particles {
@@ -27,6 +27,18 @@ struct Particles {
   Scalars mass;          ///< [particle], kg (kg/m^2 in 1D, kg/m in 2D: per unit of the directions left out)
   Scalars volume;        ///< [particle], m^3 (m in 1D, m^2 in 2D)
   Fields cauchy_stress;  ///< [particle][3, 4 or 6], Pa, tension positive; order xx yy zz xy yz xz
+
+  /// Views a caller's array as a field without owning it: entry (p, c) is at
+  /// first[p * row_stride + c * column_stride]. Strides count numbers, not bytes.
+  static Fields wrap(Real* first, int particles, int columns, int row_stride, int column_stride = 1) {
+    return Fields(first,
+                  Kokkos::LayoutStride(static_cast<size_t>(particles), static_cast<size_t>(row_stride),
+                                       static_cast<size_t>(columns), static_cast<size_t>(column_stride)));
+  }
+  /// The same for one number per particle: entry p is at first[p * stride].
+  static Scalars wrap(Real* first, int particles, int stride = 1) {
+    return Scalars(first, Kokkos::LayoutStride(static_cast<size_t>(particles), static_cast<size_t>(stride)));
+  }
 
   KOKKOS_FUNCTION int count() const { return static_cast<int>(mass.extent(0)); }
 
@@ -108,16 +120,6 @@ template <int Dim, class Real, class Device>
 ParticleBlock<Dim, Real, Kokkos::HostSpace> host_copy(const ParticleBlock<Dim, Real, Device>& source) {
   return {Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), source.block, "vsb::particles on host"),
           source.particles.count()};
-}
-
-/// Wraps a caller's array as a field: entry (p, c) is at pointer[p * row_stride + c * column_stride].
-template <int Dim, class Real, class Device>
-typename Particles<Dim, Real, Device>::Fields make_unmanaged_field(Real* pointer, int particles, int columns,
-                                                                   int row_stride, int column_stride) {
-  using Fields = typename Particles<Dim, Real, Device>::Fields;
-  return Fields(pointer,
-                Kokkos::LayoutStride(static_cast<size_t>(particles), static_cast<size_t>(row_stride),
-                                     static_cast<size_t>(columns), static_cast<size_t>(column_stride)));
 }
 
 }  // namespace vsb

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// A particle code with its own memory, an array of structures, that lets vsb make the steps: the embedding that the
-/// README shows, on the host's default execution space. Exits 0 when the pressed block behaves.
+/// A particle code with its own memory, an array of structures, that lets vsb make the steps: the embedding
+/// that the README shows, on the host's default execution space. Exits 0 when the pressed block behaves.
 #include <cmath>
 #include <cstdio>
 #include <vector>
@@ -26,19 +26,18 @@ int run() {
     for (int i = 0; i < 8; ++i)
       mine.push_back({{1.125 + 0.25 * i, 0.125 + 0.25 * j}, {0, 0}, {0, 0, 0, 0}, 62.5, 0.0625, i});
 
-  // Wrapped, not copied: where the first value is, how many, and the distances in doubles.
-  vsb::Particles<2, double, Device> particles;
+  // Wrapped, not copied: where the first value is, how many particles and columns, and the distance
+  // from one particle to the next in doubles.
   const int n = static_cast<int>(mine.size()), stride = sizeof(MyParticle) / sizeof(double);
-  const auto wrap = [&](double* first, int columns) {
-    return vsb::make_unmanaged_field<2, double, Device>(first, n, columns, stride, 1);
-  };
-  particles.position = wrap(mine[0].x, 2);
-  particles.velocity = wrap(mine[0].v, 2);
-  particles.cauchy_stress = wrap(mine[0].stress, 4);
-  particles.mass = Kokkos::subview(wrap(&mine[0].mass, 1), Kokkos::ALL, 0);
-  particles.volume = Kokkos::subview(wrap(&mine[0].volume, 1), Kokkos::ALL, 0);
+  vsb::Particles<2, double, Device> particles;
+  particles.position = particles.wrap(mine[0].x, n, 2, stride);
+  particles.velocity = particles.wrap(mine[0].v, n, 2, stride);
+  particles.cauchy_stress = particles.wrap(mine[0].stress, n, 4, stride);
+  particles.mass = particles.wrap(&mine[0].mass, n, stride);
+  particles.volume = particles.wrap(&mine[0].volume, n, stride);
 
-  // A grid of 5 x 1 cells of 1 m; the left side of the block is held, the sides are rollers, 10 kPa press on the right.
+  // A grid of 5 x 1 cells of 1 m; the left side of the block is held, the sides are rollers, 10 kPa press on
+  // the right.
   const vsb::LinearBasis<2, double> basis{vsb::UniformGrid<2, double>({{1.0, 0.0}}, {{1.0, 1.0}}, {{5, 1}})};
   auto state = vsb::make_state(particles, basis);
   for (int node = 0; node < basis.node_count(); ++node) {

@@ -224,12 +224,11 @@ TEST_CASE("a caller's array of structures runs as it is, with the same bits") {
   }
   const int row = sizeof(Grain) / sizeof(double);
   Particles<3, double, Device> theirs;
-  theirs.position = make_unmanaged_field<3, double, Device>(grains[0].x, n, 3, row, 1);
-  theirs.velocity = make_unmanaged_field<3, double, Device>(grains[0].v, n, 3, row, 1);
-  theirs.cauchy_stress = make_unmanaged_field<3, double, Device>(grains[0].sigma, n, 6, row, 1);
-  using Scalars = Particles<3, double, Device>::Scalars;
-  theirs.mass = Scalars(&grains[0].m, Kokkos::LayoutStride(n, row));
-  theirs.volume = Scalars(&grains[0].V, Kokkos::LayoutStride(n, row));
+  theirs.position = theirs.wrap(grains[0].x, n, 3, row);
+  theirs.velocity = theirs.wrap(grains[0].v, n, 3, row);
+  theirs.cauchy_stress = theirs.wrap(grains[0].sigma, n, 6, row);
+  theirs.mass = theirs.wrap(&grains[0].m, n, row);
+  theirs.volume = theirs.wrap(&grains[0].V, n, row);
 
   const std::vector<Body<double>> bodies{{0, n, LinearElastic<double>::from_young(1, 0.3)}};
   StepOptions<3, double> options;

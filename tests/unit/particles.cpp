@@ -122,8 +122,9 @@ TEST_CASE("an unmanaged field finds each component of an array of structures") {
     for (auto& s : r.sigma) s = ++value;
   }
   const int row = sizeof(Record) / sizeof(double);
-  const auto x = make_unmanaged_field<2, double, Host>(records[0].x, 4, 2, row, 1);
-  const auto sigma = make_unmanaged_field<2, double, Host>(records[0].sigma, 4, 4, row, 1);
+  using Wrapping = Particles<2, double, Host>;
+  const auto x = Wrapping::wrap(records[0].x, 4, 2, row);
+  const auto sigma = Wrapping::wrap(records[0].sigma, 4, 4, row);
   value = 0;
   for (int p = 0; p < 4; ++p) {
     for (int i = 0; i < 2; ++i) CHECK(x(p, i) == ++value);
@@ -134,7 +135,7 @@ TEST_CASE("an unmanaged field finds each component of an array of structures") {
 
   // And a structure of arrays, component by component.
   std::vector<double> columns{1, 2, 3, 10, 20, 30};
-  const auto v = make_unmanaged_field<2, double, Host>(columns.data(), 3, 2, 1, 3);
+  const auto v = Wrapping::wrap(columns.data(), 3, 2, 1, 3);
   CHECK(v(2, 0) == 3);
   CHECK(v(0, 1) == 10);
   CHECK(v(2, 1) == 30);
