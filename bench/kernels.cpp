@@ -14,7 +14,7 @@ Scene<Dim, Real> make_started_scene(const Size& size, Load load = Load::off,
   auto s = make_scene<Dim, Real>(size, load, strategy);
   auto& state = s.state;
   particles_to_grid(Exec(), state.particles, state.occupancy.bins, state.nodes, state.occupancy.boundary,
-                    state.sums_workspace, s.basis, NoVirtualStress{}, s.options.gravity, strategy);
+                    state.sums_workspace.particles, s.basis, NoVirtualStress{}, s.options.gravity, strategy);
   update_nodes(Exec(), state.nodes, s.options.damping, s.options.dt);
   remap_velocity(Exec(), state.particles, state.occupancy.bins, state.nodes, state.remap_workspace, s.basis,
                  strategy);
@@ -29,7 +29,7 @@ void add_particles_to_grid(const Size& size, Scatter strategy, Load load) {
         const auto run = [&] {
           with_field(s, [&](const auto& field) {
             particles_to_grid(Exec(), s.state.particles, s.state.occupancy.bins, s.state.nodes,
-                              s.state.occupancy.boundary, s.state.sums_workspace, s.basis, field,
+                              s.state.occupancy.boundary, s.state.sums_workspace.particles, s.basis, field,
                               s.options.gravity, strategy);
           });
         };

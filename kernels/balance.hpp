@@ -2,8 +2,8 @@
 /// \file
 /// How far a state is from equilibrium, and the resultant of its tractions.
 ///   unbalanced U = |f| over free components;   internal I = |f| without virtual stress, over all components;
-///   force ratio U / I;   net force = sum_I (f_I with - f_I without virtual stress),
-///   over free components: what acts on a prescribed one is the support's;
+///   force ratio U / I;   net force = sum_I g_I, net torque = sum_I x_I x g_I about the origin, with g_I =
+///   f_I with - f_I without tractions, over free components: what acts on a prescribed one is the support's;
 ///   kinetic energy sum_I |p_I|^2 / (2 m_I);   strain energy scale sum_p V |sigma|^2 / (2 M).
 /// The kinetic energy is the grid's: velocities of FLIP particles that cancel at every node move nothing, and
 /// no damping ever reaches them.
@@ -18,7 +18,8 @@ template <int Dim>
 struct Balance {
   double unbalanced_force;        ///< N
   double internal_force;          ///< N
-  Vector<Dim, double> net_force;  ///< resultant of the virtual stress, N
+  Vector<Dim, double> net_force;  ///< resultant of the tractions, N
+  Vector<3, double> net_torque;   ///< about the origin, N m; in 1D zero, in 2D along z
   double kinetic_energy;          ///< J
   double strain_energy;           ///< J, the scale above
 
@@ -28,21 +29,30 @@ struct Balance {
 
 namespace kernel {
 
-template <int Dim, class Real, class Device>
+template <class Grid, int Dim, class Real, class Device>
 struct NodeBalance {
-  static constexpr int size = 3 + Dim;
+  static constexpr int size = 3 + Dim + 3;
+  Grid grid;
   Nodes<Dim, Real, Device> nodes;                  ///< sums with virtual stress
   typename Nodes<Dim, Real, Device>::Fields bare;  ///< sums without
 
   KOKKOS_FUNCTION void operator()(int I, Vector<size, double>& sum) const {
     const double m = nodes.mass(I);
+    Vector<3, double> traction = Vector<3, double>::zero(), x = traction;
+    const auto place = grid.node_position(I);
     for (int i = 0; i < Dim; ++i) {
       const double f = nodes.force(I, i), g = bare(I, 1 + Dim + i), p = nodes.momentum(I, i);
       const bool fixed = nodes.fixed_components(I) >> i & 1;
       if (!fixed) sum[0] += f * f;
       sum[1] += g * g;
       if (!fixed && m > 0) sum[2] += 0.5 * p * p / m;
-      if (!fixed) sum[3 + i] += f - g;
+      if (!fixed) traction[i] = f - g;
+      x[i] = place[i];
+      sum[3 + i] += traction[i];
+    }
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      sum[3 + Dim + i] += x[j] * traction[k] - x[k] * traction[j];
     }
   }
 };
@@ -72,14 +82,16 @@ Balance<Dim> balance(const Exec& exec, State<Dim, Real, Device>& s, const std::v
   auto bare = s.nodes;
   bare.sums = typename Nodes<Dim, Real, Device>::Fields("vsb::bare_sums", s.nodes.sums.extent(0),
                                                         Nodes<Dim, Real, Device>::sum_columns);
-  particles_to_grid(exec, s.particles, s.occupancy.bins, bare, s.occupancy.boundary, s.sums_workspace, basis,
-                    NoVirtualStress{}, options.gravity, options.scatter);
-  particles_to_grid(exec, s.particles, s.occupancy.bins, s.nodes, s.occupancy.boundary, s.sums_workspace,
-                    basis, virtual_stress, options.gravity, options.scatter);
-  const auto sums = ordered_sum<3 + Dim, Device>(exec, "vsb::node_balance", s.nodes.count(),
-                                                 kernel::NodeBalance<Dim, Real, Device>{s.nodes, bare.sums});
-  Balance<Dim> result{math::sqrt(sums[0]), math::sqrt(sums[1]), {}, sums[2], 0};
+  particles_to_grid(exec, s.particles, s.occupancy.bins, bare, s.occupancy.boundary,
+                    s.sums_workspace.particles, basis, NoVirtualStress{}, options.gravity, options.scatter);
+  assemble_forces(exec, s.particles, s.occupancy, s.surface, s.nodes, s.sums_workspace, basis, virtual_stress,
+                  options.gravity, options.scatter);
+  using Functor = kernel::NodeBalance<decltype(basis.grid), Dim, Real, Device>;
+  const auto sums = ordered_sum<Functor::size, Device>(exec, "vsb::node_balance", s.nodes.count(),
+                                                       Functor{basis.grid, s.nodes, bare.sums});
+  Balance<Dim> result{math::sqrt(sums[0]), math::sqrt(sums[1]), {}, {}, sums[2], 0};
   for (int i = 0; i < Dim; ++i) result.net_force[i] = sums[3 + i];
+  for (int i = 0; i < 3; ++i) result.net_torque[i] = sums[3 + Dim + i];
   for (const auto& body : bodies) {
     const double modulus =
         std::visit([](const auto& m) { return double(m.constrained_modulus()); }, body.material);

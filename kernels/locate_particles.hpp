@@ -2,8 +2,9 @@
 /// \file
 /// Finds the bin of every particle, and sorts the particles by bin.
 ///
-/// Reads positions; writes ParticleBins. A stable counting sort: the place of a particle within its bin does
-/// not depend on the order in which threads run.
+/// Reads positions (of particles, or of anything with count() and position_of()); writes ParticleBins. A
+/// stable counting sort: the place of a particle within its bin does not depend on the order in which threads
+/// run.
 #pragma once
 
 #include <vsb/views/particle_bins.hpp>
@@ -21,9 +22,9 @@ namespace kernel {
 
 /// One particle: its bin. The reduction's minimum is p - n for a lost particle p of n, else 0 after a change
 /// of bin, else 1.
-template <class Basis, int Dim, class Real, class Device>
+template <class Basis, class Cloud, class Device>
 struct LocateParticle {
-  Particles<Dim, Real, Device> particles;
+  Cloud particles;
   Basis basis;
   typename ParticleBins<Device>::Ints bin;
 
@@ -102,13 +103,13 @@ struct SortBin {
 }  // namespace kernel
 
 /// Updates bins.bin. Returns on the host, so it waits for the device.
-template <class Exec, class Basis, int Dim, class Real, class Device>
-Whereabouts locate_particles(const Exec& exec, const Particles<Dim, Real, Device>& particles,
-                             const ParticleBins<Device>& bins, const Basis& basis) {
+template <class Exec, class Basis, class Cloud, class Device>
+Whereabouts locate_particles(const Exec& exec, const Cloud& particles, const ParticleBins<Device>& bins,
+                             const Basis& basis) {
   const int n = particles.count();
   int minimum = 1;
   Kokkos::parallel_reduce("vsb::locate_particles", Kokkos::RangePolicy<Exec>(exec, 0, n),
-                          kernel::LocateParticle<Basis, Dim, Real, Device>{particles, basis, bins.bin},
+                          kernel::LocateParticle<Basis, Cloud, Device>{particles, basis, bins.bin},
                           Kokkos::Min<int>(minimum));
   exec.fence();
   return {minimum <= 0, minimum < 0 ? minimum + n : -1};

@@ -48,12 +48,13 @@ struct ParticlesToGrid {
       TractionMask any = 0;
       for (int a = 0; a < Basis::support; ++a) any |= boundary(shape.node[a]);
       if (any != 0) {
+        const TractionMask acting = virtual_stress.acting_at(x);
         auto stress = sigma;
         auto body_force = m * gravity;
         TractionMask chi = 0;
         for (int a = 0; a < Basis::support; ++a) {
-          if (boundary(shape.node[a]) != chi) {
-            chi = boundary(shape.node[a]);
+          if ((boundary(shape.node[a]) & acting) != chi) {
+            chi = boundary(shape.node[a]) & acting;
             const auto bar = virtual_stress.at(x, chi);
             stress = sigma - bar.stress;
             body_force = m * gravity + V * bar.divergence;

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// One explicit MUSL step with FLIP velocities and virtual stress boundaries, in the paper's order.
+/// One explicit MUSL step with FLIP velocities and traction boundaries, in the paper's order.
 #pragma once
 
 #include <vector>
+#include <vsb/kernels/assemble_forces.hpp>
 #include <vsb/kernels/grid_to_particles.hpp>
-#include <vsb/kernels/particles_to_grid.hpp>
 #include <vsb/kernels/remap_velocity.hpp>
 #include <vsb/kernels/update_nodes.hpp>
-#include <vsb/kernels/update_occupancy.hpp>
 #include <vsb/kernels/update_stress.hpp>
 
 namespace vsb {
@@ -19,7 +18,9 @@ struct State {
   Particles<Dim, Real, Device> particles;
   Nodes<Dim, Real, Device> nodes;
   Occupancy<Device> occupancy;
-  ScatterWorkspace<Real, Device> sums_workspace, remap_workspace;
+  SurfacePoints<Dim, Real, Device> surface;  ///< none, unless a traction is imposed on points
+  ForceWorkspace<Real, Device> sums_workspace;
+  ScatterWorkspace<Real, Device> remap_workspace;
 };
 
 /// Allocates the nodes and the occupancy for given particles.
@@ -43,8 +44,9 @@ struct StepOptions {
   Scatter scatter = Scatter::gathered;
 };
 
-/// Advances the state by one step; `virtual_stress` is the field at the end of the step. Returns -1, or the
-/// lowest number of a particle outside the grid; the step is then not made.
+/// Advances the state by one step; `virtual_stress` is the field at the end of the step. Returns -1; or, and
+/// then the step is not made, the lowest number of a particle outside the grid, or the number of particles
+/// plus that of a surface point outside it.
 template <class Exec, class Basis, class Field, int Dim, class Real, class Device>
 int step(const Exec& exec, State<Dim, Real, Device>& s, const std::vector<Body<Real>>& bodies,
          const Basis& basis, const Field& virtual_stress, const StepOptions<Dim, Real>& options) {
@@ -52,12 +54,14 @@ int step(const Exec& exec, State<Dim, Real, Device>& s, const std::vector<Body<R
 
   const int lost = update_occupancy(exec, s.particles, s.occupancy, basis);
   if (lost >= 0) return lost;
-  particles_to_grid(exec, s.particles, s.occupancy.bins, s.nodes, s.occupancy.boundary, s.sums_workspace,
-                    basis, virtual_stress, options.gravity, options.scatter);
+  const int lost_point = assemble_forces(exec, s.particles, s.occupancy, s.surface, s.nodes, s.sums_workspace,
+                                         basis, virtual_stress, options.gravity, options.scatter);
+  if (lost_point >= 0) return s.particles.count() + lost_point;
   update_nodes(exec, s.nodes, options.damping, options.dt);
   grid_to_particles(exec, s.particles, s.nodes, basis, options.dt);
   remap_velocity(exec, s.particles, s.occupancy.bins, s.nodes, s.remap_workspace, basis, options.scatter);
   update_stress(exec, s.particles, s.nodes, bodies, basis, options.volume_update, options.dt);
+  move_surface_points(exec, s.surface, s.particles, s.nodes, basis, options.dt);
   return -1;
 }
 

@@ -39,15 +39,21 @@ KOKKOS_FORCEINLINE_FUNCTION SymmetricTensor<Dim, T> jaumann_rotation(const Symme
   return r;
 }
 
+/// I + dt L: the deformation of the step.
+template <int Dim, class T>
+KOKKOS_INLINE_FUNCTION Matrix<Dim, T> deformation_increment(const Matrix<Dim, T>& L, T dt) {
+  auto f = Matrix<Dim, T>::identity();
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j) f(i, j) += dt * L(i, j);
+  return f;
+}
+
 /// V <- V det(I + dt L): exact for a velocity gradient that acts on the configuration at the start of the
 /// step.
 struct DeterminantVolume {
   template <int Dim, class T>
   KOKKOS_FUNCTION T operator()(T volume, const Matrix<Dim, T>& L, T dt) const {
-    auto F = Matrix<Dim, T>::identity();
-    for (int i = 0; i < Dim; ++i)
-      for (int j = 0; j < Dim; ++j) F(i, j) += dt * L(i, j);
-    return volume * determinant(F);
+    return volume * determinant(deformation_increment(L, dt));
   }
 };
 

@@ -74,6 +74,20 @@ struct UniformGrid {
     for (int i = 0; i < Dim; ++i) q[i] = (x[i] - lower[i]) * inverse_spacing[i];
     return q;
   }
+  /// The place with local coordinates xi in [0, 1] of a cell, and the cell's volume per volume of [0, 1]^Dim.
+  struct Place {
+    Vector<Dim, Real> x;
+    Real volume_ratio;
+  };
+  KOKKOS_FUNCTION Place map(const Vector<Dim, int>& cell, const Vector<Dim, Real>& xi) const {
+    Place place{{}, cell_volume()};
+    for (int i = 0; i < Dim; ++i) place.x[i] = lower[i] + (static_cast<Real>(cell[i]) + xi[i]) * spacing[i];
+    return place;
+  }
+  /// The cell in which x lies; x must be in the grid.
+  KOKKOS_FUNCTION Vector<Dim, int> cell_containing(const Vector<Dim, Real>& x) const {
+    return cell_of(in_cells(x));
+  }
   /// Whether x lies in the grid; round-off at a face counts as inside, NaN as outside.
   KOKKOS_FUNCTION bool contains(const Vector<Dim, Real>& x) const {
     const auto q = in_cells(x);

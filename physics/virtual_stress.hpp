@@ -4,9 +4,11 @@
 /// normal n is replaced by any field with sbar . n = t there (Eq. 14); a pressure p, positive in compression,
 /// is sbar = -p I.
 ///
-/// What a kernel asks of a field: `loaded` (whether there is anything to add), and at(x, mask), the sum over
-/// the tractions in the mask of their fields at x. A kernel calls it where a node's mask differs from that of
-/// the node before it, so that a field that differs from surface to surface switches node by node.
+/// What a kernel asks of a field: `loaded` (whether particles have anything to add), `cell_quadrature`
+/// (whether whole cells have), acting_at(x), the tractions that may act on a particle at x, and at(x, mask),
+/// the sum over the tractions in the mask of their fields at x. A kernel calls it where a node's mask differs
+/// from that of the node before it, so that a field that differs from surface to surface switches node by
+/// node.
 #pragma once
 
 #include <vsb/views/masks.hpp>
@@ -25,9 +27,18 @@ struct VirtualStressValue {
   }
 };
 
+/// What most fields have in common: they act on particles, and on all of them.
+struct ActsOnParticles {
+  static constexpr bool loaded = true, cell_quadrature = false;
+  template <class Position>
+  KOKKOS_FUNCTION TractionMask acting_at(const Position&) const {
+    return ~TractionMask(0);
+  }
+};
+
 /// No traction anywhere; kernels skip the virtual stress at compile time.
 struct NoVirtualStress {
-  static constexpr bool loaded = false;
+  static constexpr bool loaded = false, cell_quadrature = false;
   template <int Dim, class T>
   KOKKOS_FUNCTION VirtualStressValue<Dim, T> at(const Vector<Dim, T>&, TractionMask) const {
     return VirtualStressValue<Dim, T>::zero();
@@ -42,8 +53,7 @@ KOKKOS_INLINE_FUNCTION SymmetricTensor<Dim, T> pressure_stress(T p) {
 
 /// One uniform tensor per traction; tractions add up where their surfaces overlap.
 template <int Dim, class Real>
-struct UniformVirtualStress {
-  static constexpr bool loaded = true;
+struct UniformVirtualStress : ActsOnParticles {
   static constexpr int capacity = 8;
   SymmetricTensor<Dim, Real> stress[capacity];  ///< sbar of traction k at this time, Pa, tension positive
   int count = 0;
@@ -53,6 +63,33 @@ struct UniformVirtualStress {
     for (int k = 0; k < count; ++k)
       if (mask >> k & 1u) value.stress += stress[k];
     return value;
+  }
+};
+
+/// Uniform tensors, and one exact stress field in equilibrium, such as that of an infinite
+/// body around the modelled part: its divergence is zero.
+template <class Exact, int Dim, class Real>
+struct UniformOrExactVirtualStress : ActsOnParticles {
+  UniformVirtualStress<Dim, Real> uniform;
+  Exact exact;            ///< with stress(x), Pa, tension positive
+  Real factor;            ///< on the exact stress, at this time
+  TractionMask is_exact;  ///< the tractions to which it belongs; their uniform tensors are zero
+
+  KOKKOS_FUNCTION VirtualStressValue<Dim, Real> at(const Vector<Dim, Real>& x, TractionMask mask) const {
+    auto value = uniform.at(x, mask);
+    if (mask & is_exact) value.stress += factor * exact.stress(x);
+    return value;
+  }
+};
+
+/// Tractions of `field` that act on surface points only; particles skip the virtual stress at compile time.
+template <class Field>
+struct OnSurfacePoints {
+  static constexpr bool loaded = false, cell_quadrature = false;
+  Field field;
+  template <int Dim, class T>
+  KOKKOS_FUNCTION VirtualStressValue<Dim, T> at(const Vector<Dim, T>& x, TractionMask mask) const {
+    return field.at(x, mask);
   }
 };
 

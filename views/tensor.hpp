@@ -87,6 +87,37 @@ KOKKOS_INLINE_FUNCTION T determinant(const Matrix<Dim, T>& m) {
   }
 }
 
+/// det(m) m^-T, also where m has no inverse: what turns area vectors (Nanson).
+template <int Dim, class T>
+KOKKOS_INLINE_FUNCTION Matrix<Dim, T> cofactor(const Matrix<Dim, T>& m) {
+  Matrix<Dim, T> c;
+  if constexpr (Dim == 1) {
+    c(0, 0) = T(1);
+  } else if constexpr (Dim == 2) {
+    c(0, 0) = m(1, 1);
+    c(0, 1) = -m(1, 0);
+    c(1, 0) = -m(0, 1);
+    c(1, 1) = m(0, 0);
+  } else {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+        c(i, j) = m(i1, j1) * m(i2, j2) - m(i1, j2) * m(i2, j1);
+      }
+  }
+  return c;
+}
+
+template <int Dim, class T>
+KOKKOS_INLINE_FUNCTION Vector<Dim, T> operator*(const Matrix<Dim, T>& m, const Vector<Dim, T>& v) {
+  Vector<Dim, T> r;
+  for (int i = 0; i < Dim; ++i) {
+    r[i] = m(i, 0) * v[0];
+    for (int j = 1; j < Dim; ++j) r[i] += m(i, j) * v[j];
+  }
+  return r;
+}
+
 /// Number of stored components of a symmetric stress or strain: those that uniaxial strain (xx, yy, zz),
 /// plane strain (xx, yy, zz, xy) or a general state (xx, yy, zz, xy, yz, xz) can make non-zero. Each is a
 /// prefix of the next.

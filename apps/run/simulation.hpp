@@ -47,14 +47,15 @@ struct GridSnapshot {
 /// How far from equilibrium; see kernels/balance.hpp.
 struct BalanceReport {
   double force_ratio = 1, energy_ratio = 0;
-  Point net_force{};
+  Point net_force{}, net_torque{};      ///< of the tractions as imposed; the torque about the origin
+  Point exact_force{}, exact_torque{};  ///< of the tractions on the initial surface of the bodies
 };
 
 /// The complete state of a run, bit by bit, for checkpoints.
 struct SavedState {
   long long step = 0;
   size_t bytes_per_number = 0;
-  std::vector<unsigned char> particles;  ///< raw columns, padding left out
+  std::vector<unsigned char> particles;  ///< raw columns without padding, and the surface points
 };
 
 class Simulation {

@@ -11,7 +11,7 @@
 #include <vsb/kernels/flag_boundary_particles.hpp>
 #include <vsb/kernels/health.hpp>
 #include <vsb/physics/linear_basis.hpp>
-#include "run/place_particles.hpp"
+#include "run/loads.hpp"
 #include "run/simulation.hpp"
 
 namespace vsb::app {
@@ -28,12 +28,14 @@ template <int Dim, class Real>
 class SimulationOf final : public Simulation {
  public:
   explicit SimulationOf(const Scene& scene)
-      : scene_(scene), placed_(place_particles(scene)), basis_{make_grid(scene)}, field_(make_field(scene)) {
+      : scene_(scene), placed_(place_particles(scene)), basis_{make_grid(scene)}, loads_(scene) {
     block_ = allocate_particles<Dim, Real, Device>(static_cast<int>(placed_.position.size()));
     fill_particles();
     state_ = make_state(block_.particles, basis_);
     fix_faces();
     declare_tractions();
+    place_surface_points();
+    resultants_ = exact_resultants(scene);
     options_.dt = static_cast<Real>(scene.time.dt);
     options_.damping = static_cast<Real>(scene.method.damping);
     for (int i = 0; i < Dim; ++i)
@@ -57,16 +59,15 @@ class SimulationOf final : public Simulation {
     return bytes(block_.block, n.sums, n.acceleration, n.velocity, n.remapped_velocity, n.fixed_components,
                  o.bins.bin, o.bins.order, o.bins.offset, o.bins.cursor, o.bins.slot, o.bins.occupied,
                  o.cells.occupied, o.cells.exterior, o.cells.boundary, o.tractions, o.boundary,
-                 state_.sums_workspace.bin_sums, state_.remap_workspace.bin_sums) +
+                 state_.sums_workspace.particles.bin_sums, state_.remap_workspace.bin_sums) +
            placed_.position.size() * sizeof(placed_.position[0]);
   }
 
   void advance(long long steps) override {
     for (long long n = 0; n < steps; ++n) {
-      set_loads(step_ + 1);
-      const int lost = scene_.tractions.empty()
-                           ? vsb::step(exec_, state_, bodies_, basis_, NoVirtualStress{}, options_)
-                           : vsb::step(exec_, state_, bodies_, basis_, field_, options_);
+      loads_.set_time(scene_, static_cast<double>(step_ + 1) * scene_.time.dt);
+      const int lost = with_field(
+          [&](const auto& field) { return vsb::step(exec_, state_, bodies_, basis_, field, options_); });
       if (lost >= 0) throw_lost(lost);
       ++step_;
     }
@@ -85,13 +86,22 @@ class SimulationOf final : public Simulation {
   }
 
   BalanceReport balance() override {
-    set_loads(step_);
+    loads_.set_time(scene_, time());
     locate();
-    const auto b = vsb::balance(exec_, state_, bodies_, basis_, field_, options_);
+    const auto b = with_field(
+        [&](const auto& field) { return vsb::balance(exec_, state_, bodies_, basis_, field, options_); });
     BalanceReport report;
     report.force_ratio = b.force_ratio();
     report.energy_ratio = b.strain_energy > 0 ? b.kinetic_energy / b.strain_energy : 1.0;
     for (int i = 0; i < Dim; ++i) report.net_force[static_cast<size_t>(i)] = b.net_force[i];
+    for (size_t i = 0; i < 3; ++i) {
+      report.net_torque[i] = b.net_torque[static_cast<int>(i)];
+      for (size_t k = 0; k < scene_.tractions.size(); ++k) {
+        const double factor = scene_.tractions[k].time(time());
+        report.exact_force[i] += factor * resultants_[k].force[i];
+        report.exact_torque[i] += factor * resultants_[k].torque[i];
+      }
+    }
     return report;
   }
 
@@ -156,30 +166,51 @@ class SimulationOf final : public Simulation {
   SavedState save() const override {
     const auto host = host_copy(block_).block;
     const size_t n = placed_.position.size(), column_bytes = n * sizeof(Real);
-    SavedState saved{step_, sizeof(Real), std::vector<unsigned char>(host.extent(1) * column_bytes)};
-    for (size_t c = 0; c < host.extent(1); ++c)
-      std::memcpy(saved.particles.data() + c * column_bytes, &host(0, c), column_bytes);
+    SavedState saved{step_, sizeof(Real), std::vector<unsigned char>(saved_bytes(host.extent(1)))};
+    unsigned char* to = saved.particles.data();
+    for (size_t c = 0; c < host.extent(1); ++c, to += column_bytes)
+      std::memcpy(to, &host(0, c), column_bytes);
+    for (const auto& field : {state_.surface.position, state_.surface.area}) {
+      const auto on_host =
+          Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), field, "vsb::surface on host");
+      if (field.span() == 0) continue;
+      std::memcpy(to, on_host.data(), field.span() * sizeof(Real));
+      to += field.span() * sizeof(Real);
+    }
     return saved;
   }
 
   void restore(const SavedState& saved) override {
     auto host = host_copy(block_).block;
     const size_t n = placed_.position.size(), column_bytes = n * sizeof(Real);
-    if (saved.bytes_per_number != sizeof(Real) || saved.particles.size() != host.extent(1) * column_bytes)
+    if (saved.bytes_per_number != sizeof(Real) || saved.particles.size() != saved_bytes(host.extent(1)))
       throw SetupError("the checkpoint belongs to another scene: its particles do not fit this one's");
-    for (size_t c = 0; c < host.extent(1); ++c)
-      std::memcpy(&host(0, c), saved.particles.data() + c * column_bytes, column_bytes);
+    const unsigned char* from = saved.particles.data();
+    for (size_t c = 0; c < host.extent(1); ++c, from += column_bytes)
+      std::memcpy(&host(0, c), from, column_bytes);
     Kokkos::deep_copy(block_.block, host);
+    for (const auto& field : {state_.surface.position, state_.surface.area}) {
+      if (field.span() == 0) continue;
+      const auto on_host = Kokkos::create_mirror_view(field);
+      std::memcpy(on_host.data(), from, field.span() * sizeof(Real));
+      from += field.span() * sizeof(Real);
+      Kokkos::deep_copy(field, on_host);
+    }
     step_ = saved.step;
     if (update_occupancy(exec_, state_.particles, state_.occupancy, basis_) >= 0)
       throw SetupError("the checkpoint belongs to another scene: it has particles outside this one's grid");
   }
 
  private:
+  /// Bytes of a saved state: the columns of the particles, and positions and areas of the surface points.
+  size_t saved_bytes(size_t columns) const {
+    return (columns * placed_.position.size() + state_.surface.position.span() + state_.surface.area.span()) *
+           sizeof(Real);
+  }
+
   using Device = ExecutionSpace::device_type;
   using Basis = LinearBasis<Dim, Real>;
-  using Field = UniformVirtualStress<Dim, Real>;
-  static_assert(max_tractions == Field::capacity,
+  static_assert(max_tractions == UniformVirtualStress<Dim, Real>::capacity,
                 "a scene may declare as many tractions as the kernels can take");
 
   static UniformGrid<Dim, Real> make_grid(const Scene& scene) {
@@ -193,23 +224,11 @@ class SimulationOf final : public Simulation {
     return {lower, spacing, cells};
   }
 
-  static Field make_field(const Scene& scene) {
-    Field field{};
-    field.count = static_cast<int>(scene.tractions.size());
-    return field;
-  }
-
   double time() const { return static_cast<double>(step_) * scene_.time.dt; }
 
-  /// The virtual stress of every traction at the end of a step.
-  void set_loads(long long step) {
-    const double t = static_cast<double>(step) * scene_.time.dt;
-    for (size_t k = 0; k < scene_.tractions.size(); ++k) {
-      const auto& traction = scene_.tractions[k];
-      const double factor = traction.time(t);
-      for (size_t c = 0; c < SymmetricTensor<Dim, Real>::size; ++c)
-        field_.stress[k][static_cast<int>(c)] = static_cast<Real>(factor * traction.virtual_stress[c]);
-    }
+  template <class Work>
+  auto with_field(const Work& work) const {
+    return loads_.with_field(basis_.grid, state_.occupancy.cells, work);
   }
 
   void fill_particles() {
@@ -261,37 +280,79 @@ class SimulationOf final : public Simulation {
       Point x{};
       for (size_t i = 0; i < Dim; ++i)
         x[i] = scene_.grid.lower[i] + static_cast<double>(ijk[static_cast<int>(i)]) * scene_.grid.spacing[i];
-      TractionMask declared = 0;
-      for (size_t k = 0; k < scene_.tractions.size(); ++k)
-        if (scene_.tractions[k].surface(x)) declared |= TractionMask(1) << k;
-      mask(node) = declared;
+      mask(node) = tractions_at(scene_, loads_.on_nodes(), x);
     }
     Kokkos::deep_copy(state_.occupancy.tractions, mask);
   }
 
-  /// Every traction must have boundary nodes, and the body must not touch an open face of the grid where one
-  /// is declared: there are no void cells beyond a face, so part of the load would be missing without a word.
+  /// The points of the tractions that are not imposed through boundary nodes.
+  void place_surface_points() {
+    auto points = loaded_points(scene_, placed_);
+    std::vector<bool> occupied(static_cast<size_t>(basis_.grid.cell_count()));
+    for (const Point& x : placed_.position) {
+      const auto cell = basis_.grid.cell_containing(to_vector(x));
+      int index = 0;
+      for (int i = Dim - 1; i >= 0; --i) index = index * basis_.grid.cells[i] + cell[i];
+      occupied[static_cast<size_t>(index)] = true;
+    }
+    const auto conforming = conforming_points<Dim>(scene_, basis_.grid, occupied);
+    points.insert(points.end(), conforming.begin(), conforming.end());
+    if (points.empty()) return;
+    auto& s = state_.surface;
+    s = allocate_surface_points<Dim, Real, Device>(static_cast<int>(points.size()), basis_.node_count(),
+                                                   basis_.bin_count());
+    const auto position = Kokkos::create_mirror_view(s.position), area = Kokkos::create_mirror_view(s.area);
+    const auto tractions = Kokkos::create_mirror_view(s.tractions);
+    const auto carrier = Kokkos::create_mirror_view(s.carrier);
+    for (size_t b = 0; b < points.size(); ++b) {
+      for (size_t i = 0; i < Dim; ++i) {
+        position(b, i) = static_cast<Real>(points[b].position[i]);
+        area(b, i) = static_cast<Real>(points[b].area[i]);
+      }
+      tractions(b) = points[b].tractions;
+      carrier(b) = points[b].carrier;
+      surface_tractions_ |= points[b].tractions;
+    }
+    Kokkos::deep_copy(s.position, position);
+    Kokkos::deep_copy(s.area, area);
+    Kokkos::deep_copy(s.tractions, tractions);
+    Kokkos::deep_copy(s.carrier, carrier);
+  }
+
+  static Vector<Dim, Real> to_vector(const Point& x) {
+    Vector<Dim, Real> v;
+    for (int i = 0; i < Dim; ++i) v[i] = static_cast<Real>(x[static_cast<size_t>(i)]);
+    return v;
+  }
+
+  /// Every traction must have boundary nodes or surface points, and the body must not touch an open face of
+  /// the grid where one is declared: there are no void cells beyond a face, so part of the load would be
+  /// missing without a word.
   void check_tractions() const {
     if (scene_.tractions.empty()) return;
     const auto boundary = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.occupancy.boundary,
                                                               "vsb::boundary on host");
     const auto declared = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.occupancy.tractions,
                                                               "vsb::declared on host");
-    TractionMask acting = 0;
+    TractionMask acting = surface_tractions_;
     for (size_t node = 0; node < boundary.extent(0); ++node) acting |= boundary(node);
-    for (size_t k = 0; k < scene_.tractions.size(); ++k)
-      if (!(acting >> k & 1u))
-        throw SetupError(
-            fmt::format("traction '{}' finds no boundary node, so it would load nothing. A boundary node "
-                        "belongs to a cell without "
-                        "particles or to one that touches such a cell; leave at least one empty cell beyond "
-                        "the loaded boundary "
-                        "(a smaller grid spacing, or a larger grid), and check the traction's 'surface'",
-                        scene_.tractions[k].name));
+    for (size_t k = 0; k < scene_.tractions.size(); ++k) {
+      if (acting >> k & 1u) continue;
+      if (!(loads_.on_nodes() >> k & 1u))
+        throw SetupError(fmt::format(
+            "traction '{}' finds no surface of a body{}, so it would load nothing: check its 'surface'",
+            scene_.tractions[k].name,
+            scene_.tractions[k].imposition == Imposition::nodal ? " that follows faces of cells" : ""));
+      throw SetupError(
+          fmt::format("traction '{}' finds no boundary node, so it would load nothing. A boundary node "
+                      "belongs to a cell without "
+                      "particles or to one that touches such a cell; leave at least one empty cell beyond "
+                      "the loaded boundary "
+                      "(a smaller grid spacing, or a larger grid), and check the traction's 'surface'",
+                      scene_.tractions[k].name));
+    }
     for (size_t p = 0; p < placed_.position.size(); ++p) {
-      Vector<Dim, Real> x;
-      for (int i = 0; i < Dim; ++i) x[i] = static_cast<Real>(placed_.position[p][static_cast<size_t>(i)]);
-      const auto shape = basis_.shape(x);
+      const auto shape = basis_.shape(to_vector(placed_.position[p]));
       for (int a = 0; a < Basis::support; ++a) {
         const auto ijk = basis_.grid.node_coordinates(shape.node[a]);
         if (declared(static_cast<size_t>(shape.node[a])) == 0) continue;
@@ -317,6 +378,10 @@ class SimulationOf final : public Simulation {
 
   [[noreturn]] void throw_lost(int particle) const {
     check_health();
+    if (particle >= particle_count())
+      throw Diverged(
+          fmt::format("at step {}, time {:.6g} s: position of surface point {} is outside the grid", step_,
+                      time(), particle - particle_count()));
     const auto host = host_copy(block_);
     std::string where;
     for (int i = 0; i < Dim; ++i)
@@ -331,7 +396,9 @@ class SimulationOf final : public Simulation {
   PlacedParticles placed_;
   ExecutionSpace exec_;
   Basis basis_;
-  Field field_;
+  Loads<Dim, Real> loads_;
+  std::vector<Resultant> resultants_;  ///< of each traction at full load
+  TractionMask surface_tractions_ = 0;
   ParticleBlock<Dim, Real, Device> block_;
   State<Dim, Real, Device> state_;
   std::vector<Body<Real>> bodies_;

@@ -20,6 +20,14 @@ long long peak_bytes() {
   return static_cast<long long>(usage.ru_maxrss) * 1024;
 }
 
+toml::array array(const Point& p) {
+  return toml::array{p[0], p[1], p[2]};
+}
+
+std::string text(const Point& p) {
+  return fmt::format("({:.6g}, {:.6g}, {:.6g})", p[0], p[1], p[2]);
+}
+
 }  // namespace
 
 double RunFigures::ns_per_particle_step() const {
@@ -44,7 +52,10 @@ std::string summary_json(const Scene& scene, const RunFigures& f) {
       {"static", f.found_static},
       {"force_ratio", f.balance.force_ratio},
       {"energy_ratio", f.balance.energy_ratio},
-      {"net_force", toml::array{f.balance.net_force[0], f.balance.net_force[1], f.balance.net_force[2]}},
+      {"net_force", array(f.balance.net_force)},
+      {"net_torque", array(f.balance.net_torque)},
+      {"exact_force", array(f.balance.exact_force)},
+      {"exact_torque", array(f.balance.exact_torque)},
       {"state_hash", f.state_hash},
       {"seconds", f.seconds},
       {"ns_per_particle_step", f.ns_per_particle_step()},
@@ -73,12 +84,16 @@ void print_report(const Scene& scene, const RunFigures& f) {
       fmt::print("{}\n", line);
     }
   }
-  const auto& force = f.balance.net_force;
   fmt::print("{} steps in {:.3g} s: {:.4g} ns per particle and step; peak memory {:.4g} MB\n", f.steps_timed,
              f.seconds, f.ns_per_particle_step(), static_cast<double>(peak_bytes()) / 1e6);
-  fmt::print(
-      "force ratio {:.2e}, energy ratio {:.2e}, resultant of the tractions ({:.6g}, {:.6g}, {:.6g}) N\n",
-      f.balance.force_ratio, f.balance.energy_ratio, force[0], force[1], force[2]);
+  const auto& b = f.balance;
+  fmt::print("force ratio {:.2e}, energy ratio {:.2e}\n", b.force_ratio, b.energy_ratio);
+  if (scene.tractions.empty()) return;
+  fmt::print("resultant of the tractions {} N, on the exact surface {} N\n", text(b.net_force),
+             text(b.exact_force));
+  if (scene.dimension > 1)
+    fmt::print("their torque about the origin {} N m, on the exact surface {} N m\n", text(b.net_torque),
+               text(b.exact_torque));
 }
 
 }  // namespace vsb::app

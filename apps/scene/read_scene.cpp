@@ -157,13 +157,38 @@ TimeShape read_time_function(TableReader r) {
   return shape;
 }
 
+EllipseSpec read_ellipse(TableReader& r) {
+  EllipseSpec e{};
+  e.semi_major = r.number("semi_major", Range::positive(), {}, "m, along x");
+  e.semi_minor = r.number("semi_minor", Range::positive(), {}, "m");
+  e.pressure = r.number("pressure", Range::positive(), {}, "Pa in the hole, positive in compression");
+  e.far_stress = r.number("far_stress", Range::any(), {}, "Pa, -sigma_yy far away");
+  e.far_ratio = r.number("far_ratio", Range::any(), {}, "K = sigma_xx / sigma_yy far away");
+  return e;
+}
+
+Imposition read_imposition(TableReader& r) {
+  static const std::vector<std::string> names = {"virtual_stress", "virtual_stress_original",
+                                                 "boundary_particles", "material_points", "nodal"};
+  const std::string name = r.choice("imposition", names, names[0]);
+  return static_cast<Imposition>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
 TractionSpec read_traction(TableReader r, int dimension, size_t number, TimeShape& time) {
   TractionSpec traction;
   traction.name = r.text("name", fmt::format("traction {}", number + 1));
-  const auto* pressure = r.source().get("pressure");
-  if (pressure && r.has("stress"))
-    r.fail(*pressure, "pressure", "give either a pressure or a virtual stress, not both");
-  if (r.has("stress")) {
+  traction.imposition = read_imposition(r);
+  if (int(r.has("pressure")) + int(r.has("stress")) + int(r.has("exact_ellipse")) > 1) {
+    const std::string key = r.has("pressure") ? "pressure" : "stress";
+    r.fail(*r.source().get(key), key, "give one of pressure, stress and exact_ellipse");
+  }
+  if (r.has("exact_ellipse")) {
+    if (dimension != 2)
+      r.fail(*r.source().get("exact_ellipse"), "exact_ellipse", "is a field of plane strain, dimension = 2");
+    TableReader e = r.table("exact_ellipse");
+    traction.exact = read_ellipse(e);
+    e.finish();
+  } else if (r.has("stress")) {
     const auto s =
         r.numbers("stress", 6, Range::any(), {}, "Pa, virtual stress, tension positive: xx yy zz xy yz xz");
     std::copy(s.begin(), s.end(), traction.virtual_stress.begin());
@@ -172,6 +197,11 @@ TractionSpec read_traction(TableReader r, int dimension, size_t number, TimeShap
     traction.virtual_stress = {-p, -p, -p, 0, 0, 0};
   }
   traction.surface = read_region(r, "surface", dimension, true);
+  traction.layer = everywhere();
+  if (traction.imposition == Imposition::material_points)
+    traction.layer = read_region(r, "layer", dimension, true);
+  traction.points_per_cell = static_cast<int>(
+      r.integer("points_per_cell", 1, 64, dimension == 3 ? 4 : 8, "sampling of the surface"));
   time = read_time_function(r.table("time"));
   r.finish();
   return traction;
@@ -183,6 +213,8 @@ MethodSpec read_method(TableReader r) {
       r.number("damping", {0, 1, false, true}, 0.0, "Cundall's alpha; not for bodies that move as a whole");
   m.volume_update = r.choice("volume_update", {"determinant", "exponential"}, "determinant");
   m.scatter = r.choice("scatter", {"gathered", "duplicated", "atomic"}, "gathered");
+  m.cell_gauss_points = static_cast<int>(
+      r.integer("cell_gauss_points", 1, 4, 2, "per direction, for imposition = \"virtual_stress_original\""));
   r.finish();
   return m;
 }
@@ -264,13 +296,7 @@ Comparison read_comparison(TableReader& document) {
     c.pressure = r.number("pressure", Range::positive(), {}, "Pa, positive in compression");
     comparison = c;
   } else {
-    EllipseComparison c{};
-    c.semi_major = r.number("semi_major", Range::positive(), {}, "m, along x");
-    c.semi_minor = r.number("semi_minor", Range::positive(), {}, "m");
-    c.pressure = r.number("pressure", Range::positive(), {}, "Pa in the hole, positive in compression");
-    c.far_stress = r.number("far_stress", Range::any(), {}, "Pa, -sigma_yy far away");
-    c.far_ratio = r.number("far_ratio", Range::any(), {}, "K = sigma_xx / sigma_yy far away");
-    comparison = c;
+    comparison = read_ellipse(r);
   }
   r.finish();
   return comparison;

@@ -56,10 +56,28 @@ struct BodySpec {
   Affine<Point> velocity;  ///< m/s
 };
 
+/// The plate with an elliptic hole of physics/exact_ellipse.hpp; poisson_ratio is that of the first body.
+struct EllipseSpec {
+  double semi_major, semi_minor, pressure, far_stress, far_ratio;
+};
+
+/// How a traction becomes nodal forces.
+enum class Imposition {
+  virtual_stress,           ///< modified virtual stress boundary, Eqs. (27), (28)
+  virtual_stress_original,  ///< original virtual stress boundary, Eqs. (21), (22)
+  boundary_particles,       ///< massless particles on the surface, Eq. (13)
+  material_points,          ///< the outermost layer of particles, Eq. (12)
+  nodal                     ///< the nodes of a boundary that the grid follows
+};
+
 struct TractionSpec {
   std::string name;
-  Stress6 virtual_stress{};  ///< sbar at full load
+  Imposition imposition = Imposition::virtual_stress;
+  Stress6 virtual_stress{};          ///< sbar at full load
+  std::optional<EllipseSpec> exact;  ///< instead: the exact stress field, evaluated where it is needed
   Region surface;
+  Region layer;             ///< which material points may carry the load
+  int points_per_cell = 0;  ///< sampling of the surface, in each direction
   TimeFunction time;
 };
 
@@ -79,6 +97,7 @@ struct TimeSpec {
 struct MethodSpec {
   double damping = 0;
   std::string volume_update, scatter;
+  int cell_gauss_points = 1;  ///< of the original virtual stress boundary method, per direction
 };
 
 struct OutputSpec {
@@ -94,9 +113,7 @@ struct ColumnComparison {
 struct CylinderComparison {
   double inner_radius, outer_radius, pressure;
 };
-struct EllipseComparison {
-  double semi_major, semi_minor, pressure, far_stress, far_ratio;
-};
+using EllipseComparison = EllipseSpec;
 using Comparison = std::variant<std::monostate, ColumnComparison, CylinderComparison, EllipseComparison>;
 
 /// Figures to print beside ours: error name -> what the source says.

@@ -84,6 +84,15 @@ void run_everything(Scatter strategy) {
     REQUIRE(step(Exec(), state, bodies, basis, pressure, options) == -1);
     REQUIRE(step(Exec(), state, bodies, basis, NoVirtualStress{}, options) == -1);
   }
+  // The other ways to impose a traction: a massless boundary particle, and whole cells.
+  state.surface = allocate_surface_points<Dim, double, Device>(1, basis.node_count(), basis.bin_count());
+  edit(state.surface.position, [&](const auto& x) {
+    for (int i = 0; i < Dim; ++i) x(0, i) = grid.lower[i] + 0.5 * grid.spacing[i];
+  });
+  edit(state.surface.carrier, [](const auto& carrier) { carrier(0) = carried_by_grid; });
+  using Original = OriginalVirtualStress<decltype(pressure), decltype(grid), Device>;
+  const Original original{pressure, grid, state.occupancy.cells, 1u, 2};
+  REQUIRE(step(Exec(), state, bodies, basis, original, options) == -1);
   balance(Exec(), state, bodies, basis, pressure, options);
   REQUIRE(find_invalid(Exec(), block.particles).particle == -1);
   edit(block, [](const auto& particles) { particles.volume(0) = -1; });
@@ -113,7 +122,8 @@ TEST_CASE("every label starts with vsb::") {
   for (const char* report :
        {"region: vsb::step", "for: vsb::particles_to_grid", "for: vsb::particles_to_grid/nodes",
         "reduce: vsb::locate_particles", "reduce: vsb::mark_boundary_nodes", "reduce: vsb::find_invalid",
-        "scan: vsb::scan_offsets", "for: vsb::update_stress", "for: vsb::node_balance",
+        "scan: vsb::scan_offsets", "for: vsb::update_stress", "for: vsb::surface_force",
+        "for: vsb::move_surface_points", "for: vsb::subtract_cell_virtual_stress", "for: vsb::node_balance",
         "allocation: vsb::particles", "allocation: vsb::bin_sums"}) {
     CAPTURE(report);
     CHECK(seen.count(report) == 1);

@@ -34,8 +34,7 @@ struct Collector {
 };
 
 /// sbar = -7 and fbar = 3 for traction 1, the only one declared.
-struct OneDimensionalField {
-  static constexpr bool loaded = true;
+struct OneDimensionalField : ActsOnParticles {
   VirtualStressValue<1, double> at(const Vector<1, double>&, TractionMask mask) const {
     if (mask == 0) return VirtualStressValue<1, double>::zero();
     return {{{-7, 0, 0}}, {{3}}};
@@ -201,7 +200,7 @@ TEST_CASE("LocateParticle") {
   for (int p = 0; p < 4; ++p) particles.position(p, 0) = places[p];
   const ParticleBins<Host>::Ints bin("vsb::bin", 4);
   Kokkos::deep_copy(bin, 3);
-  const kernel::LocateParticle<LinearBasis<1, double>, 1, double, Host> functor{particles, basis, bin};
+  const kernel::LocateParticle<LinearBasis<1, double>, Particles<1, double, Host>, Host> functor{particles, basis, bin};
   const auto found = [&](int p) {
     int minimum = 1;
     functor(p, minimum);
@@ -315,8 +314,9 @@ TEST_CASE("NodeBalance, StrainEnergy and SumChunk") {
   bare(1, 2) = 3;
   nodes.mass(1) = 2;
   nodes.momentum(1, 0) = 6;
-  const kernel::NodeBalance<1, double, Host> balance{nodes, bare};
-  auto sum = Vector<4, double>::zero();
+  const UniformGrid<1, double> grid({{-3.0}}, {{1.0}}, {{1}});
+  const kernel::NodeBalance<UniformGrid<1, double>, 1, double, Host> balance{grid, nodes, bare};
+  auto sum = Vector<7, double>::zero();
   balance(1, sum);
   CHECK(sum[0] == 25);
   CHECK(sum[1] == 9);
@@ -330,6 +330,26 @@ TEST_CASE("NodeBalance, StrainEnergy and SumChunk") {
   CHECK(sum[3] == 2);
   balance(0, sum);  // a node without mass adds nothing
   CHECK(sum[2] == 9);
+  for (int c = 4; c < 7; ++c) CHECK(sum[c] == 0);  // no torque in 1D
+
+  // A force (2, 5) at x = (3, 1), free: torque 3 * 5 - 1 * 2; with its y component prescribed: -1 * 2.
+  const auto plane = allocate_nodes<2, double, Host>(4);
+  const Nodes<2, double, Host>::Fields plane_bare("vsb::bare", 4, 5);
+  plane.force(3, 0) = 2;
+  plane.force(3, 1) = 5;
+  const UniformGrid<2, double> square({{2.0, 0.0}}, {{1.0, 1.0}}, {{1, 1}});
+  const kernel::NodeBalance<UniformGrid<2, double>, 2, double, Host> in_plane{square, plane, plane_bare};
+  auto free = Vector<8, double>::zero(), held = free;
+  in_plane(3, free);
+  CHECK(free[3] == 2);
+  CHECK(free[4] == 5);
+  CHECK(free[5] == 0);
+  CHECK(free[6] == 0);
+  CHECK(free[7] == 13);
+  plane.fixed_components(3) = 2;
+  in_plane(3, held);
+  CHECK(held[4] == 0);
+  CHECK(held[7] == -2);
 
   const auto particles = allocate_particles<2, double, Host>(3).particles;
   particles.volume(2) = 8;

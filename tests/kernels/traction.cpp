@@ -15,8 +15,7 @@ const int count = 2000;  // enough to have particles around every node
 
 /// sbar(x) = S0 + x S1 + y S2 + z S3, with its divergence, for any mask but 0.
 template <int Dim, class Real>
-struct AffineStress {
-  static constexpr bool loaded = true;
+struct AffineStress : ActsOnParticles {
   SymmetricTensor<Dim, Real> constant;
   SymmetricTensor<Dim, Real> slope[Dim];
 

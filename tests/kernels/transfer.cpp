@@ -23,7 +23,7 @@ struct Setup {
   }
   void to_grid(const Vector<Dim, Real>& gravity, Scatter strategy = Scatter::gathered) {
     particles_to_grid(Exec(), state.particles, state.occupancy.bins, state.nodes, state.occupancy.boundary,
-                      state.sums_workspace, basis, NoVirtualStress{}, gravity, strategy);
+                      state.sums_workspace.particles, basis, NoVirtualStress{}, gravity, strategy);
   }
   void remap(Scatter strategy = Scatter::gathered) {
     remap_velocity(Exec(), state.particles, state.occupancy.bins, state.nodes, state.remap_workspace, basis,
