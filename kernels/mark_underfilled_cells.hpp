@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// The fill criterion, an addition to Algorithm 1: a non-void cell whose particles fill too little of it,
-///   sum_p V_p < f V_cell,
+///   sum_p V_p < (1 - tau) V_cell,
 /// counts as a cell of E2, whether a void cell is near or not. It finds boundaries that are thinner than the
 /// cells next to them, such as a hole with a particle in every cell that it touches.
 ///
@@ -16,7 +16,7 @@ namespace vsb {
 
 namespace kernel {
 
-/// One word of cells: those filled by less than `minimum_volume`, void cells left out; counts the words that
+/// One word of cells: those filled by less than `minimum_volume`; counts the words that
 /// change. The bin of a cell is the number of its lowest node.
 template <int Dim, class Real, class Device>
 struct MarkUnderfilled {
@@ -42,17 +42,17 @@ struct MarkUnderfilled {
   }
 
   KOKKOS_FUNCTION bool is_underfilled(int bin) const {
-    const int begin = bins.offset(bin), end = bins.offset(bin + 1);
     Real volume = 0;
-    for (int k = begin; k < end; ++k) volume += particles.volume(bins.order(k));
-    return begin < end && volume < minimum_volume;
+    for (int k = bins.offset(bin); k < bins.offset(bin + 1); ++k) volume += particles.volume(bins.order(k));
+    return volume < minimum_volume;
   }
 };
 
 }  // namespace kernel
 
-/// Overwrites `underfilled` with the non-void cells of which the particles fill less than `minimum_fill`.
-/// Returns whether this changed any; waits for the device.
+/// Overwrites `underfilled` with the cells of which the particles fill less than `minimum_fill`. Void cells
+/// are among them and change nothing: they are of E1, or have no active node. Returns whether this changed
+/// any; waits for the device.
 template <class Exec, int Dim, class Real, class Device>
 bool mark_underfilled_cells(const Exec& exec, const Particles<Dim, Real, Device>& particles,
                             const ParticleBins<Device>& bins, const UniformGrid<Dim, Real>& grid,

@@ -43,6 +43,8 @@ void set_fill_criterion(Occupancy<Device>& o, double tau) {
   o.minimum_fill = 1 - tau;
   o.cells.underfilled = typename CellBits<Device>::Rows("vsb::cells_underfilled", o.cells.boundary.extent(0),
                                                         o.cells.boundary.extent(1));
+  Kokkos::deep_copy(o.cells.underfilled,
+                    ~std::uint64_t(0));  // no set of cells: the next update finds another
 }
 
 /// Brings the occupancy up to date. Returns the lowest number of a particle that left the grid, else -1.

@@ -160,6 +160,9 @@ TimeFunction read_sine(TableReader r) {
 TimeShape read_time_function(TableReader r) {
   static const std::vector<std::string> forms = {"ramp", "ramp_steps", "smooth_ramp", "smooth_ramp_steps",
                                                  "step", "table",      "sine"};
+  for (const auto& [key, value] : r.source())
+    if (std::find(forms.begin(), forms.end(), std::string(key.str())) == forms.end())
+      r.unknown(key, value, forms);
   if (std::count_if(forms.begin(), forms.end(), [&](const auto& key) { return r.has(key); }) > 1) {
     const auto first = r.source().begin();
     r.fail(first->second, std::string(first->first.str()),
