@@ -4,6 +4,7 @@
 ///   E1: void cells (no particle inside) that have an active node, that is, that touch a non-void cell;
 ///   E2: non-void cells that share a node with a cell of E1;
 ///   N1: active nodes of cells of E1 or E2.
+/// Underfilled cells (kernels/mark_underfilled_cells.hpp), where they are asked for, count as cells of E2.
 ///
 /// Cells and nodes are rows of bits along x, 64 to a word, and every "touches" is a dilation of bit rows.
 /// There are no cells beyond a face of the grid, so a fixed or symmetry plane there makes no boundary; a free
@@ -21,9 +22,10 @@ template <class Device>
 struct CellBits {
   using Word = std::uint64_t;
   using Rows = Kokkos::View<Word**, Kokkos::LayoutRight, Device>;
-  Rows occupied;  ///< [row][word]: non-void cells
-  Rows exterior;  ///< [row][word]: E1
-  Rows boundary;  ///< [row][word]: E1 and E2
+  Rows occupied;     ///< [row][word]: non-void cells
+  Rows exterior;     ///< [row][word]: E1
+  Rows boundary;     ///< [row][word]: E1 and E2
+  Rows underfilled;  ///< [row][word]: cells of E2 for want of particles; no rows without a fill criterion
 };
 
 /// How rows of bits along x tile a grid.
@@ -53,7 +55,7 @@ CellBits<Device> allocate_cell_bits(const UniformGrid<Dim, Real>& grid) {
   const auto r = static_cast<size_t>(rows.cell_row_count()), w = static_cast<size_t>(rows.words);
   using Rows = typename CellBits<Device>::Rows;
   return {Rows("vsb::cells_occupied", r, w), Rows("vsb::cells_exterior", r, w),
-          Rows("vsb::cells_boundary", r, w)};
+          Rows("vsb::cells_boundary", r, w), Rows()};
 }
 
 namespace kernel {
@@ -132,6 +134,16 @@ struct FindBoundary {
   }
 };
 
+/// Adds the underfilled cells to E1 and E2, word by word.
+template <class Device>
+struct AddUnderfilled {
+  CellBits<Device> bits;
+  int words;
+  KOKKOS_FUNCTION void operator()(int i) const {
+    bits.boundary(i / words, i % words) |= bits.underfilled(i / words, i % words);
+  }
+};
+
 /// N1: one word of nodes; counts those at which a traction acts.
 template <int Dim, class Device>
 struct MarkNodes {
@@ -174,6 +186,9 @@ int mark_boundary_nodes(const Exec& exec, const Particles<Dim, Real, Device>& pa
                        kernel::FindExterior<Dim, Device>{bits, tiling});
   Kokkos::parallel_for("vsb::find_boundary_cells", over_cell_words,
                        kernel::FindBoundary<Dim, Device>{bits, tiling});
+  if (bits.underfilled.size() > 0)
+    Kokkos::parallel_for("vsb::add_underfilled_cells", over_cell_words,
+                         kernel::AddUnderfilled<Device>{bits, tiling.words});
   int count = 0;
   Kokkos::parallel_reduce("vsb::mark_boundary_nodes", over_node_words,
                           kernel::MarkNodes<Dim, Device>{bits, tiling, tractions, boundary}, count);

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// What follows from where the particles are: their bins, and, when a particle has changed its bin, the order
-/// of the particles within the bins and the boundary nodes.
+/// of the particles within the bins and the boundary nodes. With a fill criterion the boundary nodes follow
+/// the volumes too: the cells' fill is summed at every call, so that the nodes depend on the particles of the
+/// moment alone, and a resumed run finds the ones it had.
 #pragma once
 
 #include <vsb/kernels/locate_particles.hpp>
 #include <vsb/kernels/mark_boundary_nodes.hpp>
+#include <vsb/kernels/mark_underfilled_cells.hpp>
 
 namespace vsb {
 
@@ -17,6 +20,7 @@ struct Occupancy {
   BoundaryNodes<Device> tractions;  ///< [node]: the tractions declared at the node's place
   BoundaryNodes<Device> boundary;   ///< [node]: the tractions that act there, N1 of Algorithm 1
   int boundary_node_count = 0;
+  double minimum_fill = 0;  ///< of a cell's volume, see set_fill_criterion; 0: no criterion
 };
 
 /// Allocates the occupancy of `particles` particles; no traction is declared anywhere yet.
@@ -31,17 +35,31 @@ Occupancy<Device> allocate_occupancy(int particles, const Basis& basis) {
   return o;
 }
 
+/// From the next update on, cells that the particles fill by less than 1 - tau, 0 < tau < 1, count as cells
+/// of E2. tau must be well above the strain of the cells inside the body and the scatter of their fill, or
+/// they count too.
+template <class Device>
+void set_fill_criterion(Occupancy<Device>& o, double tau) {
+  o.minimum_fill = 1 - tau;
+  o.cells.underfilled = typename CellBits<Device>::Rows("vsb::cells_underfilled", o.cells.boundary.extent(0),
+                                                        o.cells.boundary.extent(1));
+  Kokkos::deep_copy(o.cells.underfilled,
+                    ~std::uint64_t(0));  // no set of cells: the next update finds another
+}
+
 /// Brings the occupancy up to date. Returns the lowest number of a particle that left the grid, else -1.
 template <class Exec, class Basis, int Dim, class Real, class Device>
 int update_occupancy(const Exec& exec, const Particles<Dim, Real, Device>& particles, Occupancy<Device>& o,
                      const Basis& basis) {
   const auto where = locate_particles(exec, particles, o.bins, basis);
-  if (where.changed && where.lost < 0) {
-    sort_by_bin(exec, o.bins);
+  if (where.lost >= 0) return where.lost;
+  if (where.changed) sort_by_bin(exec, o.bins);
+  const bool refilled = o.minimum_fill > 0 && mark_underfilled_cells(exec, particles, o.bins, basis.grid,
+                                                                     o.minimum_fill, o.cells.underfilled);
+  if (where.changed || refilled)
     o.boundary_node_count =
         mark_boundary_nodes(exec, particles, o.cells, basis.grid, o.tractions, o.boundary);
-  }
-  return where.lost;
+  return -1;
 }
 
 }  // namespace vsb

@@ -5,39 +5,44 @@
 
 #include <limits>
 
+#include "run/lattice_points.hpp"
 #include "run/simulation.hpp"
 
 namespace vsb::app {
+
+namespace {
+
+bool in_grid(const Scene& scene, const Point& x) {
+  const auto& grid = scene.grid;
+  for (size_t i = 0; i < static_cast<size_t>(scene.dimension); ++i)
+    if (!(x[i] >= grid.lower[i] && x[i] <= grid.lower[i] + grid.cells[i] * grid.spacing[i])) return false;
+  return true;
+}
+
+}  // namespace
 
 PlacedParticles place_particles(const Scene& scene) {
   PlacedParticles placed;
   for (size_t b = 0; b < scene.bodies.size(); ++b) {
     const auto& body = scene.bodies[b];
-    std::array<long long, 3> points{1, 1, 1};
-    std::array<double, 3> interval{};
-    double volume = 1;
-    for (size_t i = 0; i < static_cast<size_t>(scene.dimension); ++i) {
-      points[i] = static_cast<long long>(scene.grid.cells[i]) * body.particles_per_cell[i];
-      interval[i] = scene.grid.spacing[i] / body.particles_per_cell[i];
-      volume *= interval[i];
-    }
     const auto first = placed.position.size();
-    for (long long k = 0; k < points[2]; ++k)
-      for (long long j = 0; j < points[1]; ++j)
-        for (long long i = 0; i < points[0]; ++i) {
-          const std::array<long long, 3> ijk{i, j, k};
-          Point x{};
-          for (size_t d = 0; d < static_cast<size_t>(scene.dimension); ++d)
-            x[d] = scene.grid.lower[d] + (static_cast<double>(ijk[d]) + 0.5) * interval[d];
-          if (!body.region(x)) continue;
-          for (size_t other = 0; other < b; ++other)
-            if (scene.bodies[other].region(x))
-              throw SetupError(fmt::format(
-                  "body '{}' overlaps body '{}' at ({}, {}, {}): cut one out of the other with a difference",
-                  body.name, scene.bodies[other].name, x[0], x[1], x[2]));
-          placed.position.push_back(x);
-          placed.volume.push_back(volume);
-        }
+    for_each_lattice_point(scene, body, [&](const LatticePoint& point) {
+      Point x = point.x;
+      if (!in_grid(scene, x) || !body.region(x)) return;
+      for (size_t other = 0; other < b; ++other)
+        if (scene.bodies[other].region(x))
+          throw SetupError(fmt::format(
+              "body '{}' overlaps body '{}' at ({}, {}, {}): cut one out of the other with a difference",
+              body.name, scene.bodies[other].name, x[0], x[1], x[2]));
+      for (size_t i = 0; i < 3; ++i) x[i] += point.shift[i];
+      if (!in_grid(scene, x))
+        throw SetupError(fmt::format(
+            "body '{}': its jitter moves a particle out of the grid, to ({}, {}, {}): make the grid larger, "
+            "or let a face of the grid lie between two points of the lattice",
+            body.name, x[0], x[1], x[2]));
+      placed.position.push_back(x);
+      placed.volume.push_back(point.volume);
+    });
     if (placed.position.size() == first)
       throw SetupError(fmt::format(
           "body '{}' has no particle: its shape contains no lattice point of the grid", body.name));

@@ -20,9 +20,9 @@ struct PlacedParticles {
   std::vector<PlacedBody> bodies;
 };
 
-/// Puts a particle at every lattice point that lies in a body: particles_per_cell equal intervals of every
-/// cell in every direction, a particle in the middle of each. Throws SetupError for an empty body and for
-/// bodies that overlap.
+/// Puts a particle at every point of a body's lattice that lies in its shape and in the grid, then moves it
+/// by the body's jitter. Throws SetupError for an empty body, for bodies that overlap, and for a jitter that
+/// moves a particle out of the grid.
 PlacedParticles place_particles(const Scene& scene);
 
 }  // namespace vsb::app

@@ -195,9 +195,10 @@ void check_scene(const Scene& scene) {
   const auto simulation = make_simulation(scene);
   fmt::print("# {} particles, {} boundary nodes, {:.3g} MB of state\n", simulation->particle_count(),
              simulation->boundary_nodes(), static_cast<double>(simulation->state_bytes()) / 1e6);
-  fmt::print("# dt = {:.6g} s (kappa {:.4g}), {} {} steps, loads constant from {:.6g} s on\n", scene.time.dt,
-             scene.time.kappa, scene.time.until_static ? "at most" : "exactly", scene.time.steps,
-             loads_settled_at(scene));
+  const double settled = loads_settled_at(scene);
+  fmt::print("# dt = {:.6g} s (kappa {:.4g}), {} {} steps, loads {}\n", scene.time.dt, scene.time.kappa,
+             scene.time.until_static ? "at most" : "exactly", scene.time.steps,
+             std::isfinite(settled) ? fmt::format("constant from {:.6g} s on", settled) : "never constant");
   // The rate is measured: a few steps of the scene itself, the first one (which sorts) left out.
   simulation->advance(1);
   const auto begin = Clock::now();

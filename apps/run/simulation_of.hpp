@@ -11,6 +11,7 @@
 #include <vsb/kernels/flag_boundary_particles.hpp>
 #include <vsb/kernels/health.hpp>
 #include <vsb/physics/linear_basis.hpp>
+#include "run/grid_lines.hpp"
 #include "run/loads.hpp"
 #include "run/simulation.hpp"
 
@@ -29,9 +30,11 @@ class SimulationOf final : public Simulation {
  public:
   explicit SimulationOf(const Scene& scene)
       : scene_(scene), placed_(place_particles(scene)), basis_{make_grid(scene)}, loads_(scene) {
+    refuse_on_grid_lines(scene, placed_);
     block_ = allocate_particles<Dim, Real, Device>(static_cast<int>(placed_.position.size()));
     fill_particles();
     state_ = make_state(block_.particles, basis_);
+    if (scene.method.fill_criterion > 0) set_fill_criterion(state_.occupancy, scene.method.fill_criterion);
     fix_faces();
     declare_tractions();
     place_surface_points();
@@ -58,8 +61,8 @@ class SimulationOf final : public Simulation {
     const auto bytes = [](const auto&... views) { return (... + (views.span() * sizeof(*views.data()))); };
     return bytes(block_.block, n.sums, n.acceleration, n.velocity, n.remapped_velocity, n.fixed_components,
                  o.bins.bin, o.bins.order, o.bins.offset, o.bins.cursor, o.bins.slot, o.bins.occupied,
-                 o.cells.occupied, o.cells.exterior, o.cells.boundary, o.tractions, o.boundary,
-                 state_.sums_workspace.particles.bin_sums, state_.remap_workspace.bin_sums) +
+                 o.cells.occupied, o.cells.exterior, o.cells.boundary, o.cells.underfilled, o.tractions,
+                 o.boundary, state_.sums_workspace.particles.bin_sums, state_.remap_workspace.bin_sums) +
            placed_.position.size() * sizeof(placed_.position[0]);
   }
 
@@ -348,7 +351,8 @@ class SimulationOf final : public Simulation {
                       "belongs to a cell without "
                       "particles or to one that touches such a cell; leave at least one empty cell beyond "
                       "the loaded boundary "
-                      "(a smaller grid spacing, or a larger grid), and check the traction's 'surface'",
+                      "(a smaller grid spacing, or a larger grid), or set method.fill_criterion, and check the "
+                      "traction's 'surface'",
                       scene_.tractions[k].name));
     }
     for (size_t p = 0; p < placed_.position.size(); ++p) {

@@ -7,9 +7,11 @@
 
 #include <vsb/physics/explicit_dynamics.hpp>
 #include <vsb/physics/linear_elastic.hpp>
+#include "scene/read_lattice.hpp"
 #include "scene/read_region.hpp"
 #include "scene/scene.hpp"
 #include "scene/toml_reader.hpp"
+#include "scene/units.hpp"
 
 namespace vsb::app {
 
@@ -100,13 +102,12 @@ Affine<std::array<double, N>> read_affine(TableReader& r, const std::string& key
   return field;
 }
 
-BodySpec read_body(TableReader r, int dimension, size_t number) {
+BodySpec read_body(TableReader r, const GridSpec& grid, int dimension, size_t number) {
   const auto d = static_cast<size_t>(dimension);
   BodySpec body;
   body.name = r.text("name", fmt::format("body {}", number + 1));
   body.region = read_region(r, "shape", dimension, false);
-  const auto ppc = r.integer_or_integers("particles_per_cell", d, 1, 64, {}, "in each direction");
-  std::copy(ppc.begin(), ppc.end(), body.particles_per_cell.begin());
+  read_lattice(r, grid, dimension, body);
   body.density = r.number("density", Range::positive(), {}, "kg/m^3");
   body.stress = read_affine<6>(r, "stress", 6, dimension, "Pa, tension positive: xx yy zz xy yz xz");
   body.velocity = read_affine<3>(r, "velocity", d, dimension, "m/s");
@@ -119,35 +120,73 @@ BodySpec read_body(TableReader r, int dimension, size_t number) {
 struct TimeShape {
   TimeFunction in_seconds;
   long long ramp_steps = 0;
+  bool smooth = false;
+
+  TimeFunction at(double dt) const {
+    if (ramp_steps == 0) return in_seconds;
+    const double duration = static_cast<double>(ramp_steps) * dt;
+    return smooth ? TimeFunction(TimeFunction::SmoothRamp{duration}) : TimeFunction::ramp(duration);
+  }
 };
 
-TimeShape read_time_function(TableReader r) {
-  TimeShape shape;
-  const int given = int(r.has("ramp")) + int(r.has("ramp_steps")) + int(r.has("step")) + int(r.has("table"));
-  if (given > 1) {
-    const auto first = r.source().begin();
-    r.fail(first->second, std::string(first->first.str()), "give one of ramp, ramp_steps, step and table");
+TimeFunction read_table(TableReader& r) {
+  const toml::node& node = *r.node("table");
+  const char* what = "must be an array of [time in s, factor] pairs, times not decreasing";
+  TimeFunction::Table points;
+  const auto* rows = node.as_array();
+  if (!rows || rows->empty()) r.fail(node, "table", what);
+  for (const auto& row : *rows) {
+    const auto* pair = row.as_array();
+    if (!pair || pair->size() != 2) r.fail(row, "table", what);
+    points.emplace_back(checked_number(r, *pair->get(0), "table", Range::at_least(0)),
+                        checked_number(r, *pair->get(1), "table", Range::any()));
+    if (points.size() > 1 && points.back().first < points[points.size() - 2].first)
+      r.fail(row, "table", what);
   }
+  return points;
+}
+
+TimeFunction read_sine(TableReader r) {
+  TimeFunction::Sine sine{};
+  sine.period = r.number("period", Range::positive(), {}, "s");
+  sine.amplitude = r.number("amplitude", Range::any(), 1.0, "share of the full load");
+  sine.mean = r.number("mean", Range::any(), 0.0, "share of the full load; the factor before 'start'");
+  sine.start = r.number("start", Range::at_least(0), 0.0, "s");
+  sine.phase = radians(r.number("phase", Range::any(), 0.0, "degrees, at 'start'"));
+  r.finish();
+  return sine;
+}
+
+TimeShape read_time_function(TableReader r) {
+  static const std::vector<std::string> forms = {"ramp", "ramp_steps", "smooth_ramp", "smooth_ramp_steps",
+                                                 "step", "table",      "sine"};
+  for (const auto& [key, value] : r.source())
+    if (std::find(forms.begin(), forms.end(), std::string(key.str())) == forms.end())
+      r.unknown(key, value, forms);
+  if (std::count_if(forms.begin(), forms.end(), [&](const auto& key) { return r.has(key); }) > 1) {
+    const auto first = r.source().begin();
+    r.fail(first->second, std::string(first->first.str()),
+           fmt::format("give one of {}", fmt::join(forms, ", ")));
+  }
+  TimeShape shape;
+  const auto steps = [&](const char* key) {
+    return r.integer(key, 1, 1'000'000'000'000LL, {}, "steps to full load");
+  };
   if (r.has("ramp_steps")) {
-    shape.ramp_steps = r.integer("ramp_steps", 1, 1'000'000'000'000LL, {}, "steps to full load");
+    shape.ramp_steps = steps("ramp_steps");
+  } else if (r.has("smooth_ramp_steps")) {
+    shape.ramp_steps = steps("smooth_ramp_steps");
+    shape.smooth = true;
+  } else if (r.has("smooth_ramp")) {
+    shape.in_seconds = TimeFunction::SmoothRamp{
+        r.number("smooth_ramp", Range::positive(), {}, "s to full load, without a jump of slope")};
   } else if (r.has("step")) {
     shape.in_seconds =
         TimeFunction::step(r.number("step", Range::at_least(0), {}, "s, full load from here on"));
   } else if (r.has("table")) {
-    const toml::node& node = *r.node("table");
-    const char* what = "must be an array of [time in s, factor] pairs, times not decreasing";
-    std::vector<std::pair<double, double>> points;
-    const auto* rows = node.as_array();
-    if (!rows || rows->empty()) r.fail(node, "table", what);
-    for (const auto& row : *rows) {
-      const auto* pair = row.as_array();
-      if (!pair || pair->size() != 2) r.fail(row, "table", what);
-      points.emplace_back(checked_number(r, *pair->get(0), "table", Range::at_least(0)),
-                          checked_number(r, *pair->get(1), "table", Range::any()));
-      if (points.size() > 1 && points.back().first < points[points.size() - 2].first)
-        r.fail(row, "table", what);
-    }
-    shape.in_seconds = TimeFunction(std::move(points));
+    shape.in_seconds = read_table(r);
+  } else if (r.has("sine")) {
+    shape.in_seconds = read_sine(r.table("sine"));
   } else {
     const double duration =
         r.number("ramp", Range::at_least(0), 0.0, "s to full load; 0: full load from the start");
@@ -215,6 +254,10 @@ MethodSpec read_method(TableReader r) {
   m.scatter = r.choice("scatter", {"gathered", "duplicated", "atomic"}, "gathered");
   m.cell_gauss_points = static_cast<int>(
       r.integer("cell_gauss_points", 1, 4, 2, "per direction, for imposition = \"virtual_stress_original\""));
+  m.fill_criterion =
+      r.number("fill_criterion", {0, 1, false, true}, 0.0,
+               "tau: cells filled by less than 1 - tau count as boundary cells; 0: no such cells");
+  m.allow_particles_on_grid_lines = r.boolean("allow_particles_on_grid_lines", false);
   r.finish();
   return m;
 }
@@ -343,7 +386,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
   scene.grid = read_grid(r.table("grid"), scene.dimension);
   scene.faces = read_faces(r.table("faces"), scene.dimension);
   for (auto& table : r.tables("body"))
-    scene.bodies.push_back(read_body(table, scene.dimension, scene.bodies.size()));
+    scene.bodies.push_back(read_body(table, scene.grid, scene.dimension, scene.bodies.size()));
   if (scene.bodies.empty()) r.missing("body", "at least one table [[body]]");
   std::vector<TimeShape> time_shapes;
   for (auto& table : r.tables("traction")) {
@@ -357,10 +400,11 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
   if (!r.has("time")) r.missing("time", "a table with dt or kappa, and steps or until_static");
   scene.time = read_time(r.table("time"), scene);
   for (size_t k = 0; k < time_shapes.size(); ++k) {
-    const auto& shape = time_shapes[k];
-    scene.tractions[k].time = shape.ramp_steps > 0
-                                  ? TimeFunction::ramp(static_cast<double>(shape.ramp_steps) * scene.time.dt)
-                                  : shape.in_seconds;
+    scene.tractions[k].time = time_shapes[k].at(scene.time.dt);
+    if (scene.time.until_static && !std::isfinite(scene.tractions[k].time.settled_at()))
+      r.fail(*document["time"]["until_static"].node(), "time.until_static",
+             fmt::format("traction '{}' is a sine, which never settles; give time.steps instead",
+                         scene.tractions[k].name));
   }
   scene.output = read_output(r.table("output"));
   scene.compare = read_comparison(r);

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "scene/lattice.hpp"
 #include "scene/region.hpp"
 #include "scene/time_function.hpp"
 
@@ -49,8 +50,9 @@ struct LinearElasticSpec {
 struct BodySpec {
   std::string name;
   Region region;
-  std::array<int, 3> particles_per_cell{1, 1, 1};  ///< in each direction
-  double density = 0;                              ///< kg/m^3
+  Lattice lattice;
+  Jitter jitter;
+  double density = 0;  ///< kg/m^3
   LinearElasticSpec material{};
   Affine<Stress6> stress;
   Affine<Point> velocity;  ///< m/s
@@ -98,6 +100,8 @@ struct MethodSpec {
   double damping = 0;
   std::string volume_update, scatter;
   int cell_gauss_points = 1;  ///< of the original virtual stress boundary method, per direction
+  double fill_criterion = 0;  ///< tau, see kernels/mark_underfilled_cells.hpp; 0: off
+  bool allow_particles_on_grid_lines = false;
 };
 
 struct OutputSpec {

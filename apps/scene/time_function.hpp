@@ -3,37 +3,70 @@
 /// How a load varies in time: a factor on its full value.
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <utility>
+#include <variant>
 #include <vector>
+
+#include "scene/units.hpp"
 
 namespace vsb::app {
 
-/// Piecewise linear through (time in s, factor) points of increasing time, constant before the first and
-/// after the last. A ramp is {(0, 0), (T, 1)}; two points at the same time are a jump.
 class TimeFunction {
  public:
-  explicit TimeFunction(std::vector<std::pair<double, double>> points = {{0.0, 1.0}})
-      : points_(std::move(points)) {}
+  /// Piecewise linear through (time in s, factor) points of increasing time, constant before the first and
+  /// after the last. Two points at the same time are a jump.
+  using Table = std::vector<std::pair<double, double>>;
+  /// 10 s^3 - 15 s^4 + 6 s^5 of s = t / duration: slope and curvature vanish at both ends.
+  struct SmoothRamp {
+    double duration;  ///< s
+  };
+  /// mean + amplitude sin(2 pi (t - start) / period + phase); before `start` the mean.
+  struct Sine {
+    double period, amplitude, mean, start, phase;  ///< s, 1, 1, s, rad
+  };
 
-  static TimeFunction ramp(double duration) { return TimeFunction({{0.0, 0.0}, {duration, 1.0}}); }
-  static TimeFunction step(double at) { return TimeFunction({{at, 0.0}, {at, 1.0}}); }
+  TimeFunction(Table points = {{0.0, 1.0}}) : form_(std::move(points)) {}
+  TimeFunction(SmoothRamp ramp) : form_(ramp) {}
+  TimeFunction(Sine sine) : form_(sine) {}
+
+  static TimeFunction ramp(double duration) { return Table{{0.0, 0.0}, {duration, 1.0}}; }
+  static TimeFunction step(double at) { return Table{{at, 0.0}, {at, 1.0}}; }
 
   /// The factor at time t; at a jump, the value after it.
   double operator()(double t) const {
-    if (t < points_.front().first) return points_.front().second;
-    for (size_t i = 1; i < points_.size(); ++i) {
-      const auto [t0, f0] = points_[i - 1];
-      const auto [t1, f1] = points_[i];
-      if (t < t1) return f0 + (f1 - f0) * ((t - t0) / (t1 - t0));
-    }
-    return points_.back().second;
+    return std::visit([t](const auto& form) { return factor(form, t); }, form_);
   }
 
-  /// From here on the factor is constant.
-  double settled_at() const { return points_.back().first; }
+  /// From here on the factor is constant; infinite where it never is.
+  double settled_at() const {
+    if (const auto* points = std::get_if<Table>(&form_)) return points->back().first;
+    if (const auto* ramp = std::get_if<SmoothRamp>(&form_)) return ramp->duration;
+    return std::numeric_limits<double>::infinity();
+  }
 
  private:
-  std::vector<std::pair<double, double>> points_;
+  static double factor(const Table& points, double t) {
+    if (t < points.front().first) return points.front().second;
+    for (size_t i = 1; i < points.size(); ++i) {
+      const auto [t0, f0] = points[i - 1];
+      const auto [t1, f1] = points[i];
+      if (t < t1) return f0 + (f1 - f0) * ((t - t0) / (t1 - t0));
+    }
+    return points.back().second;
+  }
+  static double factor(const SmoothRamp& ramp, double t) {
+    if (t >= ramp.duration) return 1;
+    const double s = t / ramp.duration;
+    return s * s * s * (10 + s * (6 * s - 15));
+  }
+  static double factor(const Sine& sine, double t) {
+    if (t < sine.start) return sine.mean;
+    return sine.mean + sine.amplitude * std::sin(2 * pi * (t - sine.start) / sine.period + sine.phase);
+  }
+
+  std::variant<Table, SmoothRamp, Sine> form_;
 };
 
 }  // namespace vsb::app

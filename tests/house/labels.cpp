@@ -71,6 +71,7 @@ void run_everything(Scatter strategy) {
   });
   auto state = make_state(block.particles, basis);
   Kokkos::deep_copy(state.occupancy.tractions, 1u);
+  set_fill_criterion(state.occupancy, 0.1);
   const std::vector<Body<double>> bodies{{0, 32, LinearElastic<double>::from_young(1, 0.3)},
                                          {32, 64, LinearElastic<double>::from_young(2, 0.3)}};
   UniformVirtualStress<Dim, double> pressure;
@@ -121,7 +122,8 @@ TEST_CASE("every label starts with vsb::") {
   // The listener did listen.
   for (const char* report :
        {"region: vsb::step", "for: vsb::particles_to_grid", "for: vsb::particles_to_grid/nodes",
-        "reduce: vsb::locate_particles", "reduce: vsb::mark_boundary_nodes", "reduce: vsb::find_invalid",
+        "reduce: vsb::locate_particles", "reduce: vsb::mark_boundary_nodes",
+        "reduce: vsb::mark_underfilled_cells", "for: vsb::add_underfilled_cells", "reduce: vsb::find_invalid",
         "scan: vsb::scan_offsets", "for: vsb::update_stress", "for: vsb::surface_force",
         "for: vsb::move_surface_points", "for: vsb::subtract_cell_virtual_stress", "for: vsb::node_balance",
         "allocation: vsb::particles", "allocation: vsb::bin_sums"}) {

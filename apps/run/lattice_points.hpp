@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// The points of a body's lattice, wherever they lie.
+#pragma once
+
+#include <functional>
+
+#include "scene/scene.hpp"
+
+namespace vsb::app {
+
+struct LatticePoint {
+  Point x;        ///< m
+  double volume;  ///< m^3 (area in 2D, length in 1D)
+  Point shift;    ///< what the body's jitter adds to x, m
+};
+
+/// Visits the lattice points of a body in a fixed order: for cell and uniform lattices those in the box of
+/// the grid, along x first; for concentric ones all, along the angle first, then ring by ring and layer by
+/// layer. A point's shift depends on its place in the lattice and the seed alone, not on the points visited
+/// before.
+void for_each_lattice_point(const Scene& scene, const BodySpec& body,
+                            const std::function<void(const LatticePoint&)>& visit);
+
+}  // namespace vsb::app

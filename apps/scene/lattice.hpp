@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Lattices: where a body has its particles, and how much volume each stands for. Plain data. A body keeps
+/// the lattice points that lie in its shape and in the grid.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <variant>
+
+namespace vsb::app {
+
+/// Equal intervals of every grid cell in every direction, a particle in the middle of each.
+struct CellLattice {
+  std::array<int, 3> particles_per_cell{1, 1, 1};
+};
+
+/// Particles at origin + (k + 1/2) spacing, of the volume of one interval.
+struct UniformLattice {
+  std::array<double, 3> origin{}, spacing{};  ///< m
+};
+
+/// Rings around an axis along z: in the middle of ring i of equal width dr, r_i = a + (i + 1/2) dr,
+/// `per_ring` particles in the middles of equal angles dtheta; V = r dr dtheta, the sector's own area. In 3D
+/// in layers of equal height, V = r dr dtheta dz.
+struct ConcentricLattice {
+  std::array<double, 2> center{};             ///< m
+  double inner_radius = 0, outer_radius = 0;  ///< m
+  int rings = 1, per_ring = 1;
+  double first_angle = 0, last_angle = 0;  ///< rad, from the x axis towards y
+  double lower = 0, upper = 0;             ///< m along z, in 3D
+  int layers = 1;
+};
+
+using Lattice = std::variant<CellLattice, UniformLattice, ConcentricLattice>;
+
+/// Moves each particle of a cell or uniform lattice, in every direction, by a random share of the spacing
+/// between -amount and amount.
+struct Jitter {
+  double amount = 0;
+  std::uint64_t seed = 1;
+};
+
+}  // namespace vsb::app

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Units in which scenes differ from the rest of the program.
+#pragma once
+
+namespace vsb::app {
+
+constexpr double pi = 3.14159265358979323846;
+
+constexpr double radians(double degrees) {
+  return degrees * (pi / 180);
+}
+
+}  // namespace vsb::app

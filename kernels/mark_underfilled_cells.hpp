@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// The fill criterion, an addition to Algorithm 1: a non-void cell whose particles fill too little of it,
+///   sum_p V_p < (1 - tau) V_cell,
+/// counts as a cell of E2, whether a void cell is near or not. It finds boundaries that are thinner than the
+/// cells next to them, such as a hole with a particle in every cell that it touches.
+///
+/// Reads the bins sorted by sort_by_bin and the present volumes; writes CellBits::underfilled. The sum over a
+/// cell's particles runs in increasing particle number, so the cells are the same whatever ran in parallel.
+#pragma once
+
+#include <vsb/kernels/mark_boundary_nodes.hpp>
+#include <vsb/views/particle_bins.hpp>
+
+namespace vsb {
+
+namespace kernel {
+
+/// One word of cells: those filled by less than `minimum_volume`; counts the words that
+/// change. The bin of a cell is the number of its lowest node.
+template <int Dim, class Real, class Device>
+struct MarkUnderfilled {
+  Particles<Dim, Real, Device> particles;
+  ParticleBins<Device> bins;
+  UniformGrid<Dim, Real> grid;
+  BitRows<Dim> tiling;
+  Real minimum_volume;  ///< m^3 (area in 2D, length in 1D)
+  typename CellBits<Device>::Rows underfilled;
+
+  KOKKOS_FUNCTION void operator()(int i, int& changed) const {
+    const int r = i / tiling.words, w = i % tiling.words;
+    Vector<Dim, int> cell;
+    cell[0] = 64 * w;
+    if constexpr (Dim > 1) cell[1] = r % tiling.cell_rows[0];
+    if constexpr (Dim > 2) cell[2] = r / tiling.cell_rows[0];
+    const int first_bin = grid.node_index(cell), cells = math::min(tiling.cells_x - 64 * w, 64);
+    std::uint64_t word = 0;
+    for (int b = 0; b < cells; ++b)
+      if (is_underfilled(first_bin + b)) word |= std::uint64_t(1) << b;
+    if (word != underfilled(r, w)) ++changed;
+    underfilled(r, w) = word;
+  }
+
+  KOKKOS_FUNCTION bool is_underfilled(int bin) const {
+    Real volume = 0;
+    for (int k = bins.offset(bin); k < bins.offset(bin + 1); ++k) volume += particles.volume(bins.order(k));
+    return volume < minimum_volume;
+  }
+};
+
+}  // namespace kernel
+
+/// Overwrites `underfilled` with the cells of which the particles fill less than `minimum_fill`. Void cells
+/// are among them and change nothing: they are of E1, or have no active node. Returns whether this changed
+/// any; waits for the device.
+template <class Exec, int Dim, class Real, class Device>
+bool mark_underfilled_cells(const Exec& exec, const Particles<Dim, Real, Device>& particles,
+                            const ParticleBins<Device>& bins, const UniformGrid<Dim, Real>& grid,
+                            double minimum_fill, const typename CellBits<Device>::Rows& underfilled) {
+  const BitRows<Dim> tiling(grid);
+  const Real minimum_volume = static_cast<Real>(minimum_fill) * grid.cell_volume();
+  int changed = 0;
+  Kokkos::parallel_reduce(
+      "vsb::mark_underfilled_cells",
+      Kokkos::RangePolicy<Exec>(exec, 0, tiling.cell_row_count() * tiling.words),
+      kernel::MarkUnderfilled<Dim, Real, Device>{particles, bins, grid, tiling, minimum_volume, underfilled},
+      changed);
+  exec.fence();
+  return changed > 0;
+}
+
+}  // namespace vsb
