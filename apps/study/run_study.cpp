@@ -33,7 +33,7 @@ int particles_of(const StudyCase& c) {
 }
 
 std::string number(double x) {
-  return std::abs(x) >= 1e-2 && std::abs(x) < 1e5 ? fmt::format("{:.5g}", x) : fmt::format("{:.4e}", x);
+  return x == std::floor(x) && std::abs(x) < 1e9 ? fmt::format("{:.0f}", x) : fmt::format("{:.4e}", x);
 }
 
 std::string expected_text(const Expectation& e) {
