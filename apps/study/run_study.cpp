@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 
+#include "files/hdf5_file.hpp"
 #include "run/interrupt.hpp"
 #include "run/progress.hpp"
 #include "scene/toml_reader.hpp"
@@ -87,6 +89,7 @@ class StudyRun {
 
   ExitCode run() {
     const InterruptGuard guard;
+    create_directory();
     say("{}: {} cases, results in {}\n", study_.title, tasks_.size(), options_.directory);
     for (size_t t = 0; t < tasks_.size(); ++t) {
       const bool earlier = tasks_[t].done();
@@ -129,6 +132,12 @@ class StudyRun {
       times += ", about " + duration_text(*left) + " left";
     say("case {} of {}: {} ({} particles; {})\n", t + 1, tasks_.size(), title_of(tasks_[t]),
         tasks_[t].particles, times);
+  }
+
+  void create_directory() const {
+    std::error_code error;
+    std::filesystem::create_directories(options_.directory, error);
+    if (error) throw FileError(fmt::format("{}: {}", options_.directory, error.message()));
   }
 
   double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
