@@ -50,13 +50,12 @@ std::string expected_text(const Expectation& e) {
 }
 
 std::string line_text(const StudyLine& line, const std::string& published_source) {
-  std::string text = fmt::format("  {:<5}{:<14}{:>12}",
-                                 !line.judged  ? ""
-                                 : line.passed ? "pass"
-                                               : "FAIL",
-                                 line.figure, line.value ? number(*line.value) : "-");
+  const char* verdict = !line.judged ? "" : line.passed ? "pass" : "FAIL";
+  if (line.figure == "outcome") return fmt::format("  {:<5}outcome: {}\n", verdict, line.note);
+  std::string text =
+      fmt::format("  {:<5}{:<14}{:>12}", verdict, line.figure, line.value ? number(*line.value) : "-");
   const auto deviation = line.deviation();
-  std::string beside = line.judged && line.figure != "outcome" ? expected_text(line.expectation) : "";
+  std::string beside = line.judged ? expected_text(line.expectation) : "";
   if (deviation) beside += fmt::format(" ({:+.2f} %)", 100 * *deviation);
   text += fmt::format("  {:<42}", beside);
   if (line.rate) text += fmt::format("  rate {:5.2f}", *line.rate);

@@ -121,7 +121,7 @@ class Verdicts(StudyTest):
         case = 'label = "{}"\nset = ["{}"]\nexpect_failure = "{}"\n'
         head = GOOD[:GOOD.index("[[series.case]]")]
         good = [("refused at reading", "time.dtt=1", "unknown key 'dtt' in time"),
-                ("refused at set-up", "grid.upper=[9.5]", "boundary"), ("diverged", "time.dt=0.06", "diverged at step")]
+                ("refused at set-up", "traction[0].surface={ box = { lower = [0.0], upper = [1.0] } }", "finds no boundary node"), ("diverged", "time.dt=0.06", "diverged at step")]
         head = head.replace("time.steps=200", "time.steps=20000")
         _, table = self.study(head + "".join("[[series.case]]\n" + case.format(*c) for c in good))
         self.assertEqual([(row["figure"], row["verdict"]) for row in table], [("outcome", "pass")] * 3)
