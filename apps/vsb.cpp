@@ -24,17 +24,22 @@ namespace {
 
 using namespace vsb::app;
 
+/// Throws SceneError for more threads than the backend has.
+void check_threads([[maybe_unused]] int threads) {
+#if !(defined(_OPENMP) && defined(VSB_BACKEND_OPENMP))
+  if (threads > 1) throw SceneError("--threads: this program was built for a backend without threads; use 1");
+#endif
+}
+
 /// Kokkos for the lifetime of the object, with this many threads (0: OMP_NUM_THREADS, or all cores).
 class KokkosSession {
  public:
   explicit KokkosSession(int threads) {
     // Kokkos warns when nobody has decided about binding; threads of a desktop program are best left unbound.
     setenv("OMP_PROC_BIND", "false", 0);
+    check_threads(threads);
 #if defined(_OPENMP) && defined(VSB_BACKEND_OPENMP)
     if (threads > 0) omp_set_num_threads(threads);
-#else
-    if (threads > 1)
-      throw SceneError("--threads: this program was built for a backend without threads; use 1");
 #endif
     Kokkos::initialize();
   }
@@ -52,6 +57,11 @@ int useful_threads(int particles) {
 #else
   return particles > 0 ? 1 : 0;
 #endif
+}
+
+/// What --threads asks for, else OMP_NUM_THREADS (0 here), else as many as pay.
+int threads_for(const Scene& scene, int asked) {
+  return asked > 0 || std::getenv("OMP_NUM_THREADS") ? asked : useful_threads(count_particles(scene));
 }
 
 void print_info() {
@@ -139,14 +149,16 @@ int main(int argc, char** argv) {
     if (*study) {
       const Study cases = read_study(find_study(study_name), fine);
       if (study_options.directory.empty()) study_options.directory = "results/" + cases.name + "-study";
-      if (threads == 0 && !std::getenv("OMP_NUM_THREADS")) threads = useful_threads(largest_case(cases));
-      const KokkosSession kokkos(threads);
+      check_threads(threads);
+      study_options.run = [threads](const Scene& scene, const RunOptions& run_options) {
+        const KokkosSession kokkos(threads_for(scene, threads));
+        return run_scene(scene, run_options);
+      };
       return run_study(cases, study_options);
     }
     const Scene scene = read_scene(scene_path, overrides);
     if (options.directory.empty()) options.directory = "results/" + scene.name;
-    if (threads == 0 && !std::getenv("OMP_NUM_THREADS")) threads = useful_threads(count_particles(scene));
-    const KokkosSession kokkos(threads);
+    const KokkosSession kokkos(threads_for(scene, threads));
     if (*run) return run_scene(scene, options).code;
     if (*check) check_scene(scene);
     return exit_done;

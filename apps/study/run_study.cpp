@@ -93,7 +93,9 @@ class StudyRun {
     for (size_t t = 0; t < tasks_.size(); ++t) {
       const bool earlier = tasks_[t].done();
       announce(t, earlier);
-      if (!earlier && !make(tasks_[t])) return interrupted();
+      if (!earlier)
+        if (const ExitCode code = make(tasks_[t]); code != exit_done)
+          return code == exit_interrupted ? interrupted() : code;
       add_row(tasks_[t]);
       print_lines(rows_.back());
       if (!earlier) write_study_files(options_.directory, study_, rows_);
@@ -170,12 +172,12 @@ class StudyRun {
     return left;
   }
 
-  /// Runs a case; false where it was interrupted.
-  bool make(Task& task) {
+  /// Runs a case that is not done.
+  ExitCode make(Task& task) {
     const auto& c = case_of(task);
     if (!c.scene) {
       task.record = CaseRecord{CaseRecord::State::failed, c.reading_failure, 0, 0, 0, 0, 0, "", {}};
-      return true;
+      return exit_done;
     }
     RunOptions run;
     run.directory = directory_of(c);
@@ -184,35 +186,9 @@ class StudyRun {
     run.resume = task.record.has_value();  // it was begun by this program, on this scene
     CaseRecord record = task.record.value_or(CaseRecord{});
     record.particles = task.particles;
-    write_case_record(run.directory, c.scene->resolved, record);
-    bool finished = true;
-    try {
-      const auto result = run_scene(*c.scene, run);
-      finished = result.code == exit_done;
-      take_figures(record, *c.scene, result.figures, finished);
-    } catch (const SetupError& error) {
-      record.state = CaseRecord::State::failed;
-      record.message = error.what();
-    } catch (const Diverged& error) {
-      record.state = CaseRecord::State::failed;
-      record.message = std::string("diverged ") + error.what();
-    }
-    write_case_record(run.directory, c.scene->resolved, record);
-    task.record = record;
-    return finished;
-  }
-
-  static void take_figures(CaseRecord& record, const Scene& scene, const RunFigures& figures, bool finished) {
-    record.seconds += figures.seconds;
-    record.steps_timed += figures.steps_timed;
-    record.steps = figures.steps;
-    if (!finished) return;
-    record.state = CaseRecord::State::finished;
-    record.end_time = static_cast<double>(figures.steps) * scene.time.dt;
-    record.state_hash = figures.state_hash;
-    record.figures = named_figures(scene, figures);
-    if (scene.time.until_static && !figures.found_static)
-      record.message = fmt::format("not static after max_steps = {}", scene.time.steps);
+    const auto result = run_case(*c.scene, run, record, options_.run);
+    task.record = result.record;
+    return result.code;
   }
 
   void add_row(const Task& task) {
@@ -269,13 +245,6 @@ class StudyRun {
 };
 
 }  // namespace
-
-int largest_case(const Study& study) {
-  int most = 0;
-  for (const auto& series : study.series)
-    for (const auto& c : series.cases) most = std::max(most, particles_of(c));
-  return most;
-}
 
 ExitCode run_study(const Study& study, const StudyOptions& options) {
   return StudyRun(study, options).run();

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "run/run_scene.hpp"
+#include "study/run_case.hpp"
 #include "study/study.hpp"
 
 namespace vsb::app {
@@ -13,10 +13,8 @@ namespace vsb::app {
 struct StudyOptions {
   std::string directory;
   bool quiet = false;  ///< print failing lines only
+  SceneRunner run;     ///< of a case
 };
-
-/// Particles of the largest case that will run.
-int largest_case(const Study& study);
 
 /// Returns exit_done, exit_study_failed where an expectation is not met, or exit_interrupted: the next call
 /// goes on from there. Throws FileError.
