@@ -25,11 +25,7 @@ try:
 except ImportError as error:
     sys.exit(f"plot.py: {error}; on Debian: apt-get install python3-h5py python3-matplotlib, and use /usr/bin/python3")
 
-plt.rcParams.update({
-    "font.size": 9, "axes.titlesize": 10, "axes.labelsize": 9, "legend.fontsize": 8, "figure.dpi": 100,
-    "savefig.dpi": 200, "axes.spines.top": False, "axes.spines.right": False, "lines.markersize": 2.5,
-})
-OURS, EXACT = "#1f5fa8", "#c8102e"
+from plot_style import EXACT, OURS
 
 
 class Frame:

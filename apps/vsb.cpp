@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The program vsb: run, check, info.
+/// The program vsb: run, check, study, info.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -13,6 +13,8 @@
 #include "run/run_scene.hpp"
 #include "run/simulation.hpp"
 #include "scene/toml_reader.hpp"
+#include "study/read_study.hpp"
+#include "study/run_study.hpp"
 
 #ifdef _OPENMP
 #include <omp.h>
@@ -22,17 +24,22 @@ namespace {
 
 using namespace vsb::app;
 
+/// Throws SceneError for more threads than the backend has.
+void check_threads([[maybe_unused]] int threads) {
+#if !(defined(_OPENMP) && defined(VSB_BACKEND_OPENMP))
+  if (threads > 1) throw SceneError("--threads: this program was built for a backend without threads; use 1");
+#endif
+}
+
 /// Kokkos for the lifetime of the object, with this many threads (0: OMP_NUM_THREADS, or all cores).
 class KokkosSession {
  public:
   explicit KokkosSession(int threads) {
     // Kokkos warns when nobody has decided about binding; threads of a desktop program are best left unbound.
     setenv("OMP_PROC_BIND", "false", 0);
+    check_threads(threads);
 #if defined(_OPENMP) && defined(VSB_BACKEND_OPENMP)
     if (threads > 0) omp_set_num_threads(threads);
-#else
-    if (threads > 1)
-      throw SceneError("--threads: this program was built for a backend without threads; use 1");
 #endif
     Kokkos::initialize();
   }
@@ -50,6 +57,11 @@ int useful_threads(int particles) {
 #else
   return particles > 0 ? 1 : 0;
 #endif
+}
+
+/// What --threads asks for, else OMP_NUM_THREADS (0 here), else as many as pay.
+int threads_for(const Scene& scene, int asked) {
+  return asked > 0 || std::getenv("OMP_NUM_THREADS") ? asked : useful_threads(count_particles(scene));
 }
 
 void print_info() {
@@ -71,7 +83,7 @@ int main(int argc, char** argv) {
       "  vsb run column.toml --set time.steps=30000   run it, with another number of steps\n"
       "  python3 apps/plot.py results/column          draw its pictures\n\n"
       "Exit codes: 0 done, 2 bad usage or input, 3 diverged, 4 files cannot be read or written,\n"
-      "5 interrupted, checkpoint written."};
+      "5 interrupted, checkpoint written, 6 a study ran but missed an expectation."};
   app.require_subcommand(1);
   app.failure_message(CLI::FailureMessage::help);
 
@@ -79,6 +91,12 @@ int main(int argc, char** argv) {
   std::vector<std::string> overrides;
   RunOptions options;
   int threads = 0;
+  const auto add_threads = [&](CLI::App* command) {
+    command
+        ->add_option("--threads", threads,
+                     "Number of threads (default: OMP_NUM_THREADS, else as many as pay)")
+        ->check(CLI::Range(1, 1024));
+  };
   const auto add_scene_options = [&](CLI::App* command) {
     command->add_option("scene", scene_path, "Scene file (TOML)")->required();
     command
@@ -86,10 +104,7 @@ int main(int argc, char** argv) {
                      "Replace a value of the scene, e.g. time.kappa=0.1 or body[0].density=2000")
         ->type_name("KEY=VALUE")
         ->take_all();
-    command
-        ->add_option("--threads", threads,
-                     "Number of threads (default: OMP_NUM_THREADS, else as many as pay)")
-        ->check(CLI::Range(1, 1024));
+    add_threads(command);
   };
 
   auto* run = app.add_subcommand("run", "Run a scene");
@@ -102,6 +117,21 @@ int main(int argc, char** argv) {
   auto* check =
       app.add_subcommand("check", "Print the resolved scene with all defaults, and what it would cost");
   add_scene_options(check);
+
+  std::string study_name;
+  StudyOptions study_options;
+  bool fine = false;
+  auto* study = app.add_subcommand(
+      "study",
+      "Run the cases of a study and compare their figures with the expected ones; called again after an\n"
+      "interrupt, it goes on where it stopped");
+  study->add_option("study", study_name, "Study of apps/studies (column), or a file (path/to/mine.toml)")
+      ->required();
+  study->add_option("--out", study_options.directory,
+                    "Directory of the results (default: results/NAME-study)");
+  study->add_flag("--fine", fine, "Run the cases marked fine too (long)");
+  add_threads(study);
+  study->add_flag("--quiet", study_options.quiet, "Print failing lines only");
 
   auto* info = app.add_subcommand("info", "Print version, commit, Kokkos, backend and instruction set");
 
@@ -116,11 +146,20 @@ int main(int argc, char** argv) {
       print_info();
       return exit_done;
     }
+    if (*study) {
+      const Study cases = read_study(find_study(study_name), fine);
+      if (study_options.directory.empty()) study_options.directory = "results/" + cases.name + "-study";
+      check_threads(threads);
+      study_options.run = [threads](const Scene& scene, const RunOptions& run_options) {
+        const KokkosSession kokkos(threads_for(scene, threads));
+        return run_scene(scene, run_options);
+      };
+      return run_study(cases, study_options);
+    }
     const Scene scene = read_scene(scene_path, overrides);
     if (options.directory.empty()) options.directory = "results/" + scene.name;
-    if (threads == 0 && !std::getenv("OMP_NUM_THREADS")) threads = useful_threads(count_particles(scene));
-    const KokkosSession kokkos(threads);
-    if (*run) return run_scene(scene, options);
+    const KokkosSession kokkos(threads_for(scene, threads));
+    if (*run) return run_scene(scene, options).code;
     if (*check) check_scene(scene);
     return exit_done;
   } catch (const SceneError& error) {

@@ -58,4 +58,8 @@ const std::vector<std::pair<std::string, std::string>>& build_info() {
   return info;
 }
 
+std::string apps_directory() {
+  return VSB_APPS_DIRECTORY;
+}
+
 }  // namespace vsb::app

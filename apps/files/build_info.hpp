@@ -12,4 +12,7 @@ namespace vsb::app {
 /// (name, value): version, commit, compiler, build type, kokkos, backend, instruction set.
 const std::vector<std::pair<std::string, std::string>>& build_info();
 
+/// The folder apps of the sources, where shipped studies and the drawing scripts lie.
+std::string apps_directory();
+
 }  // namespace vsb::app

@@ -5,20 +5,15 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <string>
 
 namespace vsb::app {
 
-namespace {
-
-std::string duration(double seconds) {
+std::string duration_text(double seconds) {
   const auto s = static_cast<long long>(seconds + 0.5);
   if (s < 60) return fmt::format("{} s", s);
   if (s < 3600) return fmt::format("{} min {:02} s", s / 60, s % 60);
   return fmt::format("{} h {:02} min", s / 3600, s / 60 % 60);
 }
-
-}  // namespace
 
 Progress::Progress(bool quiet, int particles)
     : quiet_(quiet), terminal_(isatty(STDOUT_FILENO) == 1), particles_(particles), last_(Clock::now()) {}
@@ -37,7 +32,8 @@ void Progress::report(long long step, long long made, double seconds, std::optio
   if (made > 0 && seconds > 0) {
     const double rate = static_cast<double>(made) / seconds;
     line += fmt::format(", {:.3g} particle-steps/s", rate * particles_);
-    if (expected) line += fmt::format(", {} left", duration(static_cast<double>(*expected - step) / rate));
+    if (expected)
+      line += fmt::format(", {} left", duration_text(static_cast<double>(*expected - step) / rate));
   }
   line += fmt::format(", force ratio {:.2e}", force_ratio);
   if (terminal_)

@@ -5,8 +5,12 @@
 
 #include <chrono>
 #include <optional>
+#include <string>
 
 namespace vsb::app {
+
+/// "12 s", "3 min 05 s", "2 h 10 min".
+std::string duration_text(double seconds);
 
 class Progress {
  public:

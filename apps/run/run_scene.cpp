@@ -2,15 +2,14 @@
 #include "run/run_scene.hpp"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <optional>
 
 #include "files/results.hpp"
+#include "run/interrupt.hpp"
 #include "run/progress.hpp"
 #include "run/summary.hpp"
 
@@ -23,29 +22,6 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
-
-volatile std::sig_atomic_t interrupt_requested = 0;
-
-/// Turns SIGINT and SIGTERM into a request to stop while it lives.
-class InterruptGuard {
- public:
-  InterruptGuard() {
-    interrupt_requested = 0;
-    before_int_ = std::signal(SIGINT, on_signal);
-    before_term_ = std::signal(SIGTERM, on_signal);
-  }
-  ~InterruptGuard() {
-    std::signal(SIGINT, before_int_);
-    std::signal(SIGTERM, before_term_);
-  }
-  InterruptGuard(const InterruptGuard&) = delete;
-  InterruptGuard& operator=(const InterruptGuard&) = delete;
-
- private:
-  static void on_signal(int) { interrupt_requested = 1; }
-  using Handler = void (*)(int);
-  Handler before_int_, before_term_;
-};
 
 constexpr long long health_interval = 100;  // steps between checks for a diverging run
 
@@ -106,7 +82,7 @@ void write_frames(Results& results, const Scene& scene, Simulation& simulation) 
 
 }  // namespace
 
-ExitCode run_scene(const Scene& scene, const RunOptions& options) {
+RunResult run_scene(const Scene& scene, const RunOptions& options) {
   const auto simulation = make_simulation(scene);
   Results results(options.directory, scene);
   long long resumed_step = -1;
@@ -117,7 +93,8 @@ ExitCode run_scene(const Scene& scene, const RunOptions& options) {
     }
   }
   results.begin(resumed_step);
-  if (!options.quiet) {
+  const bool reports = !options.quiet && !options.progress_only;
+  if (reports) {
     fmt::print("{}: {} particles, {} boundary nodes, dt {:.6g} s, {} {} steps, results in {}\n", scene.name,
                simulation->particle_count(), simulation->boundary_nodes(), scene.time.dt,
                scene.time.until_static ? "at most" : "exactly", scene.time.steps, options.directory);
@@ -136,17 +113,19 @@ ExitCode run_scene(const Scene& scene, const RunOptions& options) {
   while (simulation->step() < scene.time.steps && !found_static) {
     const auto begin = Clock::now();
     const long long stop = next_stop(scene, simulation->step());
-    while (simulation->step() < stop && !interrupt_requested)
+    while (simulation->step() < stop && !interrupt_requested())
       simulation->advance(std::min<long long>(stop - simulation->step(),
                                               std::max(1, 100'000 / simulation->particle_count())));
     figures.seconds += seconds_since(begin);
     const long long step = simulation->step();
-    if (step % health_interval == 0 || interrupt_requested) simulation->check_health();
-    if (interrupt_requested) {
+    if (step % health_interval == 0 || interrupt_requested()) simulation->check_health();
+    if (interrupt_requested()) {
       progress.finish();
       results.write_checkpoint(simulation->save());
-      fmt::print("interrupted at step {}; continue with --resume\n", step);
-      return exit_interrupted;
+      if (!options.progress_only) fmt::print("interrupted at step {}; continue with --resume\n", step);
+      figures.steps = step;
+      figures.steps_timed = step - first_step;
+      return {exit_interrupted, figures};
     }
     const auto& criterion = scene.time.until_static;
     if (criterion && step % criterion->check_every == 0 &&
@@ -184,11 +163,11 @@ ExitCode run_scene(const Scene& scene, const RunOptions& options) {
   figures.boundary_nodes = simulation->boundary_nodes();
   figures.state_bytes = simulation->state_bytes();
   results.write_summary(summary_json(scene, figures));
-  if (!options.quiet) print_report(scene, figures);
-  if (scene.time.until_static && !found_static)
+  if (reports) print_report(scene, figures);
+  if (scene.time.until_static && !found_static && !options.progress_only)
     fmt::print("note: not static after max_steps = {} (force ratio {:.2e}, energy ratio {:.2e})\n",
                scene.time.steps, balance.force_ratio, balance.energy_ratio);
-  return exit_done;
+  return {exit_done, figures};
 }
 
 void check_scene(const Scene& scene) {

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "run/summary.hpp"
 #include "scene/scene.hpp"
 
 namespace vsb::app {
@@ -15,18 +16,24 @@ enum ExitCode {
   exit_input = 2,
   exit_diverged = 3,
   exit_files = 4,
-  exit_interrupted = 5
+  exit_interrupted = 5,
+  exit_study_failed = 6  ///< a study was run, but not all of its expectations are met
 };
 
 struct RunOptions {
   std::string directory;  ///< where results go
   bool quiet = false;
-  bool resume = false;  ///< continue from the directory's checkpoint, if there is one
+  bool progress_only = false;  ///< print neither head nor report: the caller does
+  bool resume = false;         ///< continue from the directory's checkpoint, if there is one
 };
 
-/// Returns exit_done, or exit_interrupted after SIGINT or SIGTERM with a checkpoint written. Throws
-/// SetupError before anything is written, Diverged, FileError.
-ExitCode run_scene(const Scene& scene, const RunOptions& options);
+struct RunResult {
+  ExitCode code;       ///< exit_done, or exit_interrupted after SIGINT or SIGTERM with a checkpoint written
+  RunFigures figures;  ///< of an interrupted run only the steps and their time
+};
+
+/// Throws SetupError before anything is written, Diverged, FileError.
+RunResult run_scene(const Scene& scene, const RunOptions& options);
 
 /// Prints the resolved scene and what a run of it would cost; writes no file. Throws SetupError.
 void check_scene(const Scene& scene);

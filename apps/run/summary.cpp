@@ -35,6 +35,25 @@ double RunFigures::ns_per_particle_step() const {
                          : 0;
 }
 
+std::vector<std::pair<std::string, double>> named_figures(const Scene& scene, const RunFigures& f) {
+  auto named = f.errors;
+  named.insert(named.end(), {{"particles", f.particles},
+                             {"boundary_nodes", f.boundary_nodes},
+                             {"steps", static_cast<double>(f.steps)},
+                             {"time", static_cast<double>(f.steps) * scene.time.dt},
+                             {"force_ratio", f.balance.force_ratio},
+                             {"energy_ratio", f.balance.energy_ratio}});
+  for (size_t c = 0; c < static_cast<size_t>(scene.dimension); ++c)
+    named.emplace_back(std::string("net_force_") + "xyz"[c], f.balance.net_force[c]);
+  return named;
+}
+
+std::vector<std::string> figure_names(const Scene& scene) {
+  auto names = error_names(scene.compare);
+  for (const auto& [name, value] : named_figures(scene, {})) names.push_back(name);
+  return names;
+}
+
 std::string summary_json(const Scene& scene, const RunFigures& f) {
   toml::table errors, provenance;
   for (const auto& [name, value] : f.errors) errors.insert(name, value);

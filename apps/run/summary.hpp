@@ -25,6 +25,11 @@ struct RunFigures {
   double ns_per_particle_step() const;
 };
 
+/// The figures that depend on the scene alone, by name: errors, counts, balance; what a study can expect.
+std::vector<std::pair<std::string, double>> named_figures(const Scene& scene, const RunFigures& figures);
+/// The names that named_figures will give for a run of the scene.
+std::vector<std::string> figure_names(const Scene& scene);
+
 /// Errors, counts, times, resultant, memory and provenance as JSON.
 std::string summary_json(const Scene& scene, const RunFigures& figures);
 

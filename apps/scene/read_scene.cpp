@@ -345,13 +345,16 @@ Comparison read_comparison(TableReader& document) {
   return comparison;
 }
 
-/// The names of the error norms that a comparison yields.
+}  // namespace
+
 std::vector<std::string> error_names(const Comparison& comparison) {
   if (std::holds_alternative<ColumnComparison>(comparison)) return {"e_u", "e_u_exact", "e_sigma"};
   if (std::holds_alternative<CylinderComparison>(comparison)) return {"e_rr", "e_tt", "e_u"};
   if (std::holds_alternative<EllipseComparison>(comparison)) return {"e_xx", "e_yy", "e_xy"};
   return {};
 }
+
+namespace {
 
 Published read_published(TableReader r, const std::vector<std::string>& names) {
   Published p;

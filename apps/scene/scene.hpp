@@ -120,6 +120,9 @@ struct CylinderComparison {
 using EllipseComparison = EllipseSpec;
 using Comparison = std::variant<std::monostate, ColumnComparison, CylinderComparison, EllipseComparison>;
 
+/// The names of the error norms that a comparison yields.
+std::vector<std::string> error_names(const Comparison& comparison);
+
 /// Figures to print beside ours: error name -> what the source says.
 struct Published {
   std::string source;

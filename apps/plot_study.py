@@ -1,0 +1,258 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Draws the pictures of a study: its errors over the axis, and over what they cost.
+
+    python3 apps/plot_study.py results/column-study/column.csv
+
+Reads NAME.csv and the NAME.json beside it, as `vsb study` writes them (and calls this script); writes NAME_errors.png and
+NAME_cost.png beside them and prints their paths. Expected and published figures are open markers in the colour of their
+series.
+"""
+import argparse
+import csv
+import json
+import math
+import pathlib
+import sys
+
+try:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    from matplotlib.lines import Line2D
+    from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullLocator
+except ImportError as error:
+    sys.exit(f"plot_study.py: {error}; on Debian: apt-get install python3-matplotlib, and use /usr/bin/python3")
+
+from plot_style import EXACT as MISSED
+from plot_style import MARKERS, SERIES
+
+QUANTITIES = {"e_u": "displacement", "e_u_exact": "displacement, exact solution", "e_sigma": "stress", "e_rr": "radial stress",
+              "e_tt": "hoop stress", "e_xx": "stress xx", "e_yy": "stress yy", "e_xy": "stress xy"}
+
+
+def number(text):
+    """The number in a cell; None where it is empty or cannot stand on a logarithmic axis of errors."""
+    value = float(text) if text else math.nan
+    return value if math.isfinite(value) and value > 0 else None
+
+
+class Study:
+    """The lines of a study's errors, by series and error."""
+
+    def __init__(self, path):
+        self.path = pathlib.Path(path)
+        self.about = json.loads(self.path.with_suffix(".json").read_text())
+        with self.path.open(newline="") as file:
+            self.lines = [line for line in csv.DictReader(file) if line["figure"] in self.about["errors"]]
+        drawn = {line["series"] for line in self.lines if number(line["value"])}
+        self.series = [name for name in self.about["series"] if name in drawn]
+        self.errors = [e for e in self.about["errors"] if any(l["figure"] == e and number(l["value"]) for l in self.lines)]
+        self.labels = list(dict.fromkeys(line["case"] for line in self.lines)) if self.about["axis"]["labels"] else []
+
+    def place(self, line):
+        return self.labels.index(line["case"]) if self.labels else float(line["case"])
+
+    def of(self, series, error):
+        """The lines of a series for an error that have a value, along the axis."""
+        found = [l for l in self.lines if l["series"] == series and l["figure"] == error and number(l["value"])]
+        return sorted(found, key=self.place)
+
+    def style(self, series):
+        index = self.about["series"].index(series)
+        return SERIES[index % len(SERIES)], MARKERS[index % len(MARKERS)]
+
+
+def panels_for(study, rows):
+    """Rows of panels, one column per error."""
+    width = max(3.1 * len(study.errors), 4.5)
+    figure, panels = plt.subplots(rows, len(study.errors), squeeze=False, layout="constrained",
+                                  figsize=(width, 2.7 * rows + 0.3))
+    figure.suptitle(study.about["title"] or study.about["study"])
+    return figure, panels
+
+
+def legend_below(figure, study, extra):
+    """Series first, then what the other marks mean, in a strip that is added below the panels."""
+    handles = [Line2D([], [], color=study.style(s)[0], marker=study.style(s)[1], markersize=5, label=s,
+                      linestyle="none" if study.labels else "-") for s in study.series]
+    handles += extra
+    width, height = figure.get_size_inches()
+    letters = 17 * width  # in a line
+    columns = max(1, min(len(handles), int(letters / (8 + max(len(h.get_label()) for h in handles)))))
+    strip = 0.19 * math.ceil(len(handles) / columns) + 0.1
+    figure.set_size_inches(width, height + strip)
+    share = strip / (height + strip)
+    figure.get_layout_engine().set(rect=(0, share, 1, 1 - share))
+    figure.legend(handles=handles, loc="lower center", ncols=columns, frameon=False)
+
+
+def other_marks(study):
+    """Legend entries of the open markers that occur."""
+    handles = []
+    grey = dict(color="0.35", linestyle="none", markerfacecolor="none")
+    for column, marker, size in (("expected", "s", 8), ("published", "D", 6)):
+        if any(number(line[column]) for line in study.lines):
+            names = dict.fromkeys(l["source"] or "expected" for l in study.lines if number(l["expected"]))
+            name = ", ".join(names) if column == "expected" else study.about["published_source"]
+            handles.append(Line2D([], [], marker=marker, markersize=size, label=name, **grey))
+    if any(line["verdict"] == "fail" for line in study.lines):
+        handles.append(Line2D([], [], marker="o", markersize=12, label="misses its tolerance", **{**grey, "color": MISSED}))
+    return handles
+
+
+def draw_slopes(panel, points):
+    """Reference slopes 1 and 2 in the lower right corner, below all points there."""
+    xs = [x for x, _ in points]
+    low, high = min(xs), max(xs)
+    if not high > 1.5 * low:
+        return
+    left, right = low * (high / low) ** 0.6, low * (high / low) ** 0.95
+    above = [y for x, y in points if x >= left / 1.05]
+    bottom = 0.55 * min(above) / (right / left) ** 2
+    for slope in (1, 2):
+        panel.plot([left, right], [bottom, bottom * (right / left) ** slope], color="0.6", linewidth=0.9, zorder=1)
+        panel.annotate(str(slope), (right, bottom * (right / left) ** slope), xytext=(3, 0), textcoords="offset points",
+                       va="center", fontsize=7, color="0.45")
+    panel.plot([left, right], [bottom, bottom], color="0.85", linewidth=0.7, zorder=1)
+
+
+def draw_errors(study):
+    axis = study.about["axis"]
+    figure, panels = panels_for(study, 1)
+    for panel, error in zip(panels[0], study.errors):
+        points = []
+        for k, series in enumerate(study.series):
+            colour, marker = study.style(series)
+            lines = study.of(series, error)
+            shift = 0.7 * ((k + 0.5) / len(study.series) - 0.5) if study.labels else 0
+            for line in lines:
+                x, y = study.place(line) + shift, number(line["value"])
+                points.append((x, y))
+                for column, mark, size in (("expected", "s", 8), ("published", "D", 6)):
+                    if number(line[column]):
+                        points.append((x, number(line[column])))
+                        panel.plot(x, number(line[column]), mark, color=colour, markerfacecolor="none", markersize=size,
+                                   markeredgewidth=0.8, zorder=4)
+                if line["verdict"] == "fail":
+                    panel.plot(x, y, "o", color=MISSED, markerfacecolor="none", markersize=12, markeredgewidth=1.2, zorder=5)
+            panel.plot([study.place(l) + shift for l in lines], [number(l["value"]) for l in lines], color=colour,
+                       marker=marker, markersize=4, linewidth=1.2, linestyle="none" if study.labels else "-", zorder=3)
+        panel.set_yscale("log")
+        panel.set(title=QUANTITIES.get(error, ""), ylabel=f"{error} (-)")
+        panel.grid(axis="y", color="0.92", linewidth=0.6)
+        panel.set_axisbelow(True)
+        if study.labels:
+            panel.set_xlim(-0.5, len(study.labels) - 0.5)
+            panel.set_xticks(range(len(study.labels)), study.labels,
+                             **(dict(rotation=30, ha="right") if max(map(len, study.labels)) > 8 else {}))
+            panel.tick_params(axis="x", length=0)
+            panel.set_xlabel(axis["name"])
+        else:
+            panel.set_xlabel(axis["name"] + (f" ({axis['unit']})" if axis["unit"] else ""))
+            if axis["log"]:
+                panel.set_xscale("log")
+                draw_slopes(panel, points)
+            places = {line["case"]: float(line["case"]) for line in study.lines}
+            if len(places) <= 7:
+                panel.xaxis.set_major_locator(FixedLocator(sorted(places.values())))
+                panel.xaxis.set_minor_locator(NullLocator())
+                panel.set_xticks(sorted(places.values()), sorted(places, key=places.get))
+            panel.margins(x=0.08)
+        readable(panel.yaxis)
+    slopes = [Line2D([], [], color="0.6", linewidth=0.9, label="slopes 1 and 2")] if axis["log"] else []
+    legend_below(figure, study, other_marks(study) + slopes)
+    return figure
+
+
+def pareto(points):
+    """The points that no other one beats in both cost and error, by cost."""
+    front = []
+    for cost, error, case in sorted(points):
+        if not front or error < front[-1][1]:
+            front.append((cost, error, case))
+    return front
+
+
+def draw_cost(study):
+    costs = [("seconds", "wall time (s)"), ("particle_steps", "particle-steps (-)")]
+    figure, panels = panels_for(study, len(costs))
+    for row, (cost, name) in zip(panels, costs):
+        for panel, error in zip(row, study.errors):
+            points = []
+            for series in study.series:
+                colour, marker = study.style(series)
+                lines = [l for l in study.of(series, error) if number(l[cost])]
+                xs, ys = [number(l[cost]) for l in lines], [number(l["value"]) for l in lines]
+                points += zip(xs, ys, (l["case"] for l in lines))
+                panel.plot(xs, ys, color=colour, marker=marker, markersize=4, linewidth=0 if study.labels else 0.9, zorder=3)
+            front = pareto(points)
+            # A step: what is in reach for a given cost.
+            panel.step([x for x, _, _ in front], [y for _, y, _ in front], where="post", color="0.75", linewidth=4, alpha=0.6,
+                       solid_capstyle="round", zorder=1, marker="o", markersize=9, markeredgewidth=0)
+            panel.set(xscale="log", yscale="log", xlabel=name, ylabel=f"{error} (-)")
+            panel.margins(0.15)
+            for axis in (panel.xaxis, panel.yaxis):
+                readable(axis)
+            name_front(panel, front)
+            if row is panels[0]:
+                panel.set_title(QUANTITIES.get(error, ""))
+    front = Line2D([], [], color="0.75", linewidth=4, alpha=0.6, marker="o", markersize=9,
+                   label=f"best in reach (Pareto front), with {study.about['axis']['name']}")
+    legend_below(figure, study, [front])
+    return figure
+
+
+def name_front(panel, front):
+    """The cases on the front, to its lower left, where nothing else is; names that would overlap are left out."""
+    spans = [math.log(high / low) for low, high in (panel.get_xlim(), panel.get_ylim())]
+    last = None
+    for x, y, case in front:
+        if last and math.log(x / last[0]) < 0.2 * spans[0] and math.log(last[1] / y) < 0.07 * spans[1]:
+            continue
+        panel.annotate(case, (x, y), xytext=(-5, -4), textcoords="offset points", ha="right", va="top", fontsize=6.5,
+                       color="0.3")
+        last = (x, y)
+
+
+def readable(axis):
+    """A logarithmic axis with at least a decade, so that round-off does not look like a trend, and with enough numbers."""
+    low, high = axis.get_view_interval()
+    if high < 10 * low:
+        middle = math.sqrt(low * high)
+        low, high = middle / 3.3, middle * 3.3
+        axis.set_view_interval(low, high, ignore=True)
+    if high < 300 * low:
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 30 * low else (1, 3)))
+        axis.set_minor_locator(NullLocator())
+        axis.set_major_formatter(FuncFormatter(lambda value, _: power_text(value)))
+
+
+def power_text(value):
+    exponent = math.floor(math.log10(value) + 1e-9)
+    digit = round(value / 10**exponent)
+    if -2 <= exponent <= 2:
+        return f"{value:g}"
+    return rf"$10^{{{exponent}}}$" if digit == 1 else rf"${digit}\times10^{{{exponent}}}$"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("table", help="NAME.csv of a study")
+    parser.add_argument("--dpi", type=int, default=200, help="dots per inch of the pictures (default: 200)")
+    arguments = parser.parse_args()
+    study = Study(arguments.table)
+    if not study.errors:
+        print("plot_study.py: no case has an error to draw")
+        return
+    for kind, draw in (("errors", draw_errors), ("cost", draw_cost)):
+        path = study.path.with_name(f"{study.path.stem}_{kind}.png")
+        figure = draw(study)
+        figure.savefig(path, dpi=arguments.dpi)
+        plt.close(figure)
+        print(path)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "study/judge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vsb::app {
+
+namespace {
+
+/// log(f1/f2) / log(x1/x2): 1 for a figure that falls in proportion to x.
+std::optional<double> rate_between(double f1, double f2, double x1, double x2) {
+  if (!(f1 > 0 && f2 > 0) || x1 == x2) return {};
+  return std::log(f1 / f2) / std::log(x1 / x2);
+}
+
+void judge(StudyLine& line, const Expectation& expectation) {
+  line.expectation = expectation;
+  line.judged = true;
+  // Comparisons with NaN are false: a figure that is no number fails.
+  line.passed = line.value && *line.value >= expectation.lowest && *line.value <= expectation.highest &&
+                std::isfinite(*line.value);
+}
+
+/// Of a case that should have been refused, or was though it should not.
+StudyLine outcome_line(const StudyCase& c, const CaseRecord& record) {
+  StudyLine line;
+  line.figure = "outcome";
+  line.judged = true;
+  line.note = record.message;
+  if (c.expected_failure.empty()) return line;
+  line.passed = record.state == CaseRecord::State::failed &&
+                record.message.find(c.expected_failure) != std::string::npos;
+  if (record.state != CaseRecord::State::failed) line.note = "ran without an error";
+  if (!line.passed) line.note += fmt::format(" (expected: {})", c.expected_failure);
+  return line;
+}
+
+}  // namespace
+
+std::optional<double> StudyLine::deviation() const {
+  if (!value || !expectation.value || *expectation.value == 0) return {};
+  return *value / *expectation.value - 1;
+}
+
+std::vector<StudyLine> judge_case(const Study& study, const StudySeries& series, size_t index,
+                                  const CaseRecord& record, const CaseRecord* before) {
+  const StudyCase& c = series.cases[index];
+  std::vector<StudyLine> lines;
+  const bool failed = record.state == CaseRecord::State::failed;
+  if (failed || !c.expected_failure.empty()) lines.push_back(outcome_line(c, record));
+  if (!c.expected_failure.empty()) return lines;
+
+  auto names = error_names(c.scene->compare);
+  const auto add = [&](const std::string& name) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  for (const auto& [name, expectation] : c.expect) add(name);
+  for (const auto& [name, value] : c.published) add(name);
+  for (const auto& name : names) {
+    StudyLine line;
+    line.figure = name;
+    line.value = record.figure(name);
+    line.note = failed ? "" : record.message;
+    const auto expected = c.expect.find(name);
+    if (expected != c.expect.end()) judge(line, expected->second);
+    const auto published = c.published.find(name);
+    if (published != c.published.end()) line.published = published->second;
+    const auto previous = before ? before->figure(name) : std::nullopt;
+    if (study.rates && previous && line.value)
+      line.rate = rate_between(*previous, *line.value, series.cases[index - 1].axis, c.axis);
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+StudyLine judge_relation(const Study& study, const Relation& relation, const CaseRecord& first,
+                         const CaseRecord& second) {
+  StudyLine line;
+  const auto a = first.figure(relation.figure), b = second.figure(relation.figure);
+  const auto axis = [&](const Relation::Place& p) { return study.series[p.series].cases[p.index].axis; };
+  const char* kind = "ratio";
+  switch (relation.kind) {
+    case Relation::Kind::ratio:
+      if (a && b) line.value = *a / *b;
+      break;
+    case Relation::Kind::difference:
+      kind = "difference";
+      if (a && b) line.value = std::abs(*a - *b);
+      break;
+    case Relation::Kind::rate:
+      kind = "rate";
+      if (a && b) line.value = rate_between(*a, *b, axis(relation.first), axis(relation.second));
+      break;
+  }
+  line.figure = fmt::format("{} of {}", kind, relation.figure);
+  judge(line, relation.expectation);
+  return line;
+}
+
+}  // namespace vsb::app

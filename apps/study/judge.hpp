@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// The lines of a study: every figure of every case beside what is expected and what is published.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "study/case_record.hpp"
+#include "study/study.hpp"
+
+namespace vsb::app {
+
+/// One line of a study's table.
+struct StudyLine {
+  std::string figure;  ///< its name; "outcome" where the case gave none, or should not
+  std::optional<double> value;
+  std::optional<double> rate;  ///< against the case before in the series
+  Expectation expectation;
+  bool judged = false, passed = false;
+  std::optional<double> published;
+  std::string note;
+
+  /// Relative deviation from the expected value; none where there is no such value, or it is zero.
+  std::optional<double> deviation() const;
+};
+
+/// The lines of one case. `before` is the record of the case before it in the series, or nullptr.
+std::vector<StudyLine> judge_case(const Study& study, const StudySeries& series, size_t index,
+                                  const CaseRecord& record, const CaseRecord* before);
+
+/// The line of a relation; figures that a case did not give make it fail.
+StudyLine judge_relation(const Study& study, const Relation& relation, const CaseRecord& first,
+                         const CaseRecord& second);
+
+}  // namespace vsb::app

@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "study/read_study.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "files/build_info.hpp"
+#include "run/summary.hpp"
+#include "scene/toml_reader.hpp"
+
+namespace vsb::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// What cases inherit from their series, and series from the study.
+struct Inherited {
+  std::string scene, source, sweep;
+  std::vector<std::string> set;
+  std::optional<double> tolerance;
+};
+
+std::vector<std::string> read_set(TableReader& r) {
+  std::vector<std::string> set;
+  const auto* node = r.node("set");
+  if (!node) return set;
+  const char* what = "must be an array of overrides such as \"time.kappa=0.1\"";
+  if (!node->is_array()) r.fail(*node, "set", what);
+  for (const auto& item : *node->as_array()) {
+    if (!item.is_string()) r.fail(item, "set", what);
+    set.push_back(item.as_string()->get());
+  }
+  return set;
+}
+
+/// Reads the keys that a table may change for everything inside it.
+Inherited read_inherited(TableReader& r, Inherited outer, const fs::path& folder) {
+  if (const auto* node = r.node("scene")) {
+    if (!node->is_string()) r.fail(*node, "scene", "must be the path of a scene file");
+    outer.scene = (folder / node->as_string()->get()).lexically_normal().string();
+    if (!fs::exists(outer.scene)) r.fail(*node, "scene", fmt::format("there is no file {}", outer.scene));
+  }
+  outer.source = r.text("source", outer.source);
+  if (r.node("tolerance")) outer.tolerance = r.number("tolerance", Range::at_least(0));
+  const auto set = read_set(r);
+  outer.set.insert(outer.set.end(), set.begin(), set.end());
+  return outer;
+}
+
+void set_limits(Expectation& e, double value, double tolerance) {
+  e.value = value;
+  e.tolerance = tolerance;
+  e.lowest = value - tolerance * std::abs(value);
+  e.highest = value + tolerance * std::abs(value);
+}
+
+/// A number, or a table with either value and tolerance, or lowest and/or highest.
+Expectation read_expectation(TableReader& parent, const std::string& key, const Inherited& inherited) {
+  Expectation e;
+  e.source = inherited.source;
+  const auto* node = parent.source().get(key);
+  if (!node->is_table()) {
+    const double value = parent.number(key, Range::any());
+    if (!inherited.tolerance)
+      parent.fail(*node, key, "needs a tolerance: write tolerance = ... here, in the series or in the study");
+    if (value == 0 && *inherited.tolerance > 0)
+      parent.fail(*node, key, "a relative tolerance of zero means nothing; give lowest and highest");
+    set_limits(e, value, *inherited.tolerance);
+    return e;
+  }
+  TableReader r = parent.table(key);
+  e.source = r.text("source", e.source);
+  const bool has_lowest = r.node("lowest"), has_highest = r.node("highest");
+  if (has_lowest || has_highest) {
+    for (const char* other : {"value", "tolerance"})
+      if (r.has(other))
+        r.fail(*r.source().get(other), other, "give either value and tolerance, or lowest and highest");
+    if (has_lowest) e.lowest = r.number("lowest", Range::any());
+    if (has_highest) e.highest = r.number("highest", Range::at_least(e.lowest));
+  } else {
+    const double value = r.number("value", Range::any());
+    const double tolerance = r.number("tolerance", Range::at_least(0), inherited.tolerance);
+    if (value == 0 && tolerance > 0)
+      r.fail(*r.source().get("value"), "value",
+             "a relative tolerance of zero means nothing; give lowest and highest");
+    set_limits(e, value, tolerance);
+  }
+  r.finish();
+  return e;
+}
+
+void check_figure(const TableReader& r, const toml::node& at, const std::string& name,
+                  const std::vector<std::string>& known) {
+  if (std::find(known.begin(), known.end(), name) == known.end())
+    r.fail(at, name,
+           fmt::format("the scene gives no such figure{} (it gives {})", did_you_mean(name, known),
+                       fmt::join(known, ", ")));
+}
+
+/// Letters, digits and dots of a text; everything else becomes one dash.
+std::string slug(const std::string& text) {
+  std::string out;
+  for (const unsigned char c : text)
+    if (std::isalnum(c) || c == '.')
+      out += static_cast<char>(std::tolower(c));
+    else if (!out.empty() && out.back() != '-')
+      out += '-';
+  while (!out.empty() && out.back() == '-') out.pop_back();
+  return out;
+}
+
+class StudyReader {
+ public:
+  StudyReader(std::string path, bool fine) : path_(std::move(path)), fine_(fine) {}
+
+  Study read() {
+    const toml::table document = parse_scene_file(path_, {});
+    ResolvedTable resolved;
+    TableReader r(document, "", resolved);
+    study_.name = fs::path(path_).stem().string();
+    study_.title = r.text("title");
+    study_.published_source = r.text("published_source", "published");
+    study_.rates = r.boolean("rates", false);
+    read_axis(r);
+    const auto inherited = read_inherited(r, {}, folder());
+    auto series = r.tables("series");
+    if (series.empty()) r.missing("series", "at least one table [[series]]");
+    for (auto& table : series) read_series(table, inherited);
+    for (auto& table : r.tables("relation")) read_relation(table, inherited);
+    r.finish();
+    leave_out_fine_cases();
+    return std::move(study_);
+  }
+
+ private:
+  fs::path folder() const { return fs::path(path_).parent_path(); }
+
+  void read_axis(TableReader& document) {
+    if (!document.has("axis")) document.missing("axis", "a table with name, and unit, log or labels");
+    TableReader r = document.table("axis");
+    study_.axis.name = r.text("name");
+    study_.axis.labels = r.boolean("labels", false);
+    if (!study_.axis.labels) {
+      study_.axis.unit = r.text("unit", "");
+      study_.axis.log = r.boolean("log", false);
+    }
+    r.finish();
+    if (study_.rates && !study_.axis.log)
+      document.fail(*document.source().get("rates"), "rates",
+                    "rates need a logarithmic axis (axis.log = true)");
+  }
+
+  void read_series(TableReader& r, const Inherited& study) {
+    StudySeries series;
+    const auto* name = r.source().get("name");
+    series.name = r.text("name");
+    if (slug(series.name).empty()) r.fail(*name, "name", "must have a letter or a digit");
+    for (const auto& other : study_.series)
+      if (slug(other.name) == slug(series.name))
+        r.fail(*name, "name", "another series has this name, or one whose directories would be the same");
+    Inherited inherited = read_inherited(r, study, folder());
+    inherited.sweep = r.text("sweep", "");
+    auto cases = r.tables("case");
+    if (cases.empty()) r.missing("case", "at least one table [[series.case]]");
+    for (auto& table : cases) read_case(table, series, inherited);
+    r.finish();
+    study_.series.push_back(std::move(series));
+  }
+
+  /// The case's place on the axis, written axis = number or label = "text".
+  const toml::node& read_place(TableReader& r, StudyCase& c, size_t label_count) const {
+    const std::string key = study_.axis.labels ? "label" : "axis";
+    const auto* node = r.source().get(key);
+    if (study_.axis.labels) {
+      c.text = r.text(key);
+      c.axis = static_cast<double>(label_count);
+      if (slug(c.text).empty()) r.fail(*node, key, "must have a letter or a digit");
+    } else {
+      c.axis = r.number(key, study_.axis.log ? Range::positive() : Range::any());
+      c.text = inline_toml(*node);
+    }
+    return *node;
+  }
+
+  void read_case(TableReader& r, StudySeries& series, const Inherited& outer) {
+    StudyCase c;
+    const auto& place = read_place(r, c, series.cases.size());
+    c.directory = fmt::format("cases/{}_{}", slug(series.name), slug(c.text));
+    for (const auto& other : series.cases)
+      if (other.directory == c.directory || (!study_.axis.labels && other.axis == c.axis))
+        r.fail(place, study_.axis.labels ? "label" : "axis", "the series has this case already");
+    c.fine = r.boolean("fine", false);
+    Inherited inherited = outer;
+    if (!outer.sweep.empty()) inherited.set.push_back(outer.sweep + "=" + inline_toml(place));
+    inherited = read_inherited(r, inherited, folder());
+    if (inherited.scene.empty())
+      r.missing("scene", "the path of a scene file, here, in the series or in the study");
+    c.expected_failure = r.text("expect_failure", "");
+    read_case_scene(place, c, inherited);
+    read_figures(r, c, inherited);
+    r.finish();
+    series.cases.push_back(std::move(c));
+  }
+
+  static void read_case_scene(const toml::node& place, StudyCase& c, const Inherited& inherited) {
+    try {
+      c.scene = read_scene(inherited.scene, inherited.set);
+    } catch (const SceneError& error) {
+      if (c.expected_failure.empty())
+        throw SceneError(
+            fmt::format("{}: the scene of this case is refused:\n  {}", location(place), error.what()));
+      c.reading_failure = error.what();
+    }
+  }
+
+  static void read_figures(TableReader& r, StudyCase& c, const Inherited& inherited) {
+    for (const char* key : {"expect", "published"}) {
+      if (!r.node(key)) continue;
+      const bool expectations = std::string(key) == "expect";
+      if (expectations && !c.expected_failure.empty())
+        r.fail(*r.source().get(key), key, "a case that is expected to fail has no figures");
+      TableReader figures = r.table(key);
+      for (const auto& [name_key, value] : figures.source()) {
+        const std::string name(name_key.str());
+        if (c.scene) check_figure(figures, value, name, figure_names(*c.scene));
+        if (expectations)
+          c.expect[name] = read_expectation(figures, name, inherited);
+        else
+          c.published[name] = figures.number(name, Range::any());
+      }
+      figures.finish();
+    }
+  }
+
+  Relation::Place read_place_of(TableReader& relation, const std::string& key,
+                                const std::string& figure) const {
+    if (!relation.has(key)) relation.missing(key, "a case: { series = ..., axis = ... (or label) }");
+    TableReader r = relation.table(key);
+    Relation::Place place;
+    const auto* series = r.source().get("series");
+    const std::string name = r.text("series");
+    while (place.series < study_.series.size() && study_.series[place.series].name != name) ++place.series;
+    if (place.series == study_.series.size()) r.fail(*series, "series", "there is no series of this name");
+    StudyCase wanted;
+    const auto& at = read_place(r, wanted, 0);
+    r.finish();
+    const auto& cases = study_.series[place.series].cases;
+    const auto same = [&](const StudyCase& c) {
+      return study_.axis.labels ? c.text == wanted.text : c.axis == wanted.axis;
+    };
+    place.index = static_cast<size_t>(std::find_if(cases.begin(), cases.end(), same) - cases.begin());
+    const std::string where = study_.axis.labels ? "label" : "axis";
+    if (place.index == cases.size()) r.fail(at, where, "the series has no such case");
+    if (!cases[place.index].expected_failure.empty()) r.fail(at, where, "this case is expected to fail");
+    check_figure(relation, *relation.source().get("figure"), figure, figure_names(*cases[place.index].scene));
+    return place;
+  }
+
+  void read_relation(TableReader& r, const Inherited& study) {
+    Relation relation;
+    relation.title = r.text("title");
+    relation.figure = r.text("figure");
+    relation.first = read_place_of(r, "first", relation.figure);
+    relation.second = read_place_of(r, "second", relation.figure);
+    Inherited inherited = study;
+    inherited.source = r.text("source", study.source);
+    const std::vector<std::string> kinds = {"ratio", "difference", "rate"};
+    size_t found = 0;
+    for (size_t k = 0; k < kinds.size(); ++k) {
+      if (!r.node(kinds[k])) continue;
+      ++found;
+      relation.kind = static_cast<Relation::Kind>(k);
+      relation.expectation = read_expectation(r, kinds[k], inherited);
+    }
+    if (found != 1) r.missing("ratio", "exactly one of ratio, difference and rate");
+    if (relation.kind == Relation::Kind::rate && !study_.axis.log)
+      r.fail(*r.source().get("rate"), "rate", "rates need a logarithmic axis (axis.log = true)");
+    r.finish();
+    study_.relations.push_back(std::move(relation));
+  }
+
+  /// Takes out what only --fine runs. Relations keep their places, so their cases move first.
+  void leave_out_fine_cases() {
+    if (fine_) return;
+    auto& relations = study_.relations;
+    const auto of = [&](const Relation::Place& p) { return study_.series[p.series].cases[p.index]; };
+    relations.erase(std::remove_if(relations.begin(), relations.end(),
+                                   [&](const Relation& r) { return of(r.first).fine || of(r.second).fine; }),
+                    relations.end());
+    for (auto& relation : relations)
+      for (auto* place : {&relation.first, &relation.second}) {
+        const auto& cases = study_.series[place->series].cases;
+        place->index -= static_cast<size_t>(
+            std::count_if(cases.begin(), cases.begin() + static_cast<std::ptrdiff_t>(place->index),
+                          [](const StudyCase& c) { return c.fine; }));
+      }
+    for (auto& series : study_.series)
+      series.cases.erase(
+          std::remove_if(series.cases.begin(), series.cases.end(), [](const StudyCase& c) { return c.fine; }),
+          series.cases.end());
+  }
+
+  std::string path_;
+  bool fine_;
+  Study study_;
+};
+
+}  // namespace
+
+std::string find_study(const std::string& name_or_path) {
+  if (name_or_path.find('/') != std::string::npos || fs::path(name_or_path).extension() == ".toml")
+    return name_or_path;
+  const fs::path folder = fs::path(apps_directory()) / "studies";
+  const fs::path file = folder / (name_or_path + ".toml");
+  if (fs::exists(file)) return file.string();
+  std::set<std::string> known;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error))
+    if (entry.path().extension() == ".toml") known.insert(entry.path().stem().string());
+  throw SceneError(fmt::format(
+      "there is no study '{}' in {}{} (there are {}); a file is given with its path", name_or_path,
+      folder.string(), did_you_mean(name_or_path, {known.begin(), known.end()}), fmt::join(known, ", ")));
+}
+
+Study read_study(const std::string& path, bool fine) {
+  return StudyReader(path, fine).read();
+}
+
+}  // namespace vsb::app
