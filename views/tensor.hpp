@@ -87,6 +87,39 @@ KOKKOS_INLINE_FUNCTION T determinant(const Matrix<Dim, T>& m) {
   }
 }
 
+/// The inverse of a regular tensor.
+template <int Dim, class T>
+KOKKOS_INLINE_FUNCTION Matrix<Dim, T> inverse(const Matrix<Dim, T>& m) {
+  const T factor = T(1) / determinant(m);
+  Matrix<Dim, T> r;
+  if constexpr (Dim == 1) {
+    r(0, 0) = factor;
+  } else if constexpr (Dim == 2) {
+    r(0, 0) = factor * m(1, 1);
+    r(0, 1) = -factor * m(0, 1);
+    r(1, 0) = -factor * m(1, 0);
+    r(1, 1) = factor * m(0, 0);
+  } else {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {  // the cofactor of (j, i); cyclic indices carry its sign
+        const int a = (j + 1) % 3, b = (j + 2) % 3, c = (i + 1) % 3, d = (i + 2) % 3;
+        r(i, j) = factor * (m(a, c) * m(b, d) - m(a, d) * m(b, c));
+      }
+  }
+  return r;
+}
+
+/// m . v.
+template <int Dim, class T>
+KOKKOS_INLINE_FUNCTION Vector<Dim, T> operator*(const Matrix<Dim, T>& m, const Vector<Dim, T>& v) {
+  Vector<Dim, T> r;
+  for (int i = 0; i < Dim; ++i) {
+    r[i] = m(i, 0) * v[0];
+    for (int j = 1; j < Dim; ++j) r[i] += m(i, j) * v[j];
+  }
+  return r;
+}
+
 /// Number of stored components of a symmetric stress or strain: those that uniaxial strain (xx, yy, zz),
 /// plane strain (xx, yy, zz, xy) or a general state (xx, yy, zz, xy, yz, xz) can make non-zero. Each is a
 /// prefix of the next.
