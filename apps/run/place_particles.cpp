@@ -14,21 +14,14 @@ PlacedParticles place_particles(const Scene& scene) {
   for (size_t b = 0; b < scene.bodies.size(); ++b) {
     const auto& body = scene.bodies[b];
     std::array<long long, 3> points{1, 1, 1};
-    std::array<double, 3> interval{};
-    double volume = 1;
-    for (size_t i = 0; i < static_cast<size_t>(scene.dimension); ++i) {
+    for (size_t i = 0; i < static_cast<size_t>(scene.dimension); ++i)
       points[i] = static_cast<long long>(scene.grid.cells[i]) * body.particles_per_cell[i];
-      interval[i] = scene.grid.spacing[i] / body.particles_per_cell[i];
-      volume *= interval[i];
-    }
     const auto first = placed.position.size();
     for (long long k = 0; k < points[2]; ++k)
       for (long long j = 0; j < points[1]; ++j)
         for (long long i = 0; i < points[0]; ++i) {
-          const std::array<long long, 3> ijk{i, j, k};
-          Point x{};
-          for (size_t d = 0; d < static_cast<size_t>(scene.dimension); ++d)
-            x[d] = scene.grid.lower[d] + (static_cast<double>(ijk[d]) + 0.5) * interval[d];
+          const auto [x, volume] =
+              lattice_point(scene.grid, scene.dimension, body.particles_per_cell, {i, j, k});
           if (!body.region(x)) continue;
           for (size_t other = 0; other < b; ++other)
             if (scene.bodies[other].region(x))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The simulation of a scene in a given dimension and precision, on the backend of this build.
+/// The simulation of a scene in a given dimension, precision and basis, on the backend of this build.
 #pragma once
 
 #include <fmt/format.h>
@@ -10,25 +10,21 @@
 #include <vsb/kernels/balance.hpp>
 #include <vsb/kernels/flag_boundary_particles.hpp>
 #include <vsb/kernels/health.hpp>
-#include <vsb/physics/linear_basis.hpp>
+#include "run/basis_of.hpp"
 #include "run/place_particles.hpp"
 #include "run/simulation.hpp"
 
 namespace vsb::app {
 
-#if defined(VSB_BACKEND_CUDA)
-using ExecutionSpace = Kokkos::Cuda;
-#elif defined(VSB_BACKEND_OPENMP)
-using ExecutionSpace = Kokkos::OpenMP;
-#else
-using ExecutionSpace = Kokkos::Serial;
-#endif
-
-template <int Dim, class Real>
+template <int Dim, class Real, class Basis>
 class SimulationOf final : public Simulation {
  public:
   explicit SimulationOf(const Scene& scene)
-      : scene_(scene), placed_(place_particles(scene)), basis_{make_grid(scene)}, field_(make_field(scene)) {
+      : scene_(scene),
+        placed_(place_particles(scene)),
+        owned_basis_(scene.grid),
+        basis_(owned_basis_.basis),
+        field_(make_field(scene)) {
     block_ = allocate_particles<Dim, Real, Device>(static_cast<int>(placed_.position.size()));
     fill_particles();
     state_ = make_state(block_.particles, basis_);
@@ -58,7 +54,7 @@ class SimulationOf final : public Simulation {
                  o.bins.bin, o.bins.order, o.bins.offset, o.bins.cursor, o.bins.slot, o.bins.occupied,
                  o.cells.occupied, o.cells.exterior, o.cells.boundary, o.tractions, o.boundary,
                  state_.sums_workspace.bin_sums, state_.remap_workspace.bin_sums) +
-           placed_.position.size() * sizeof(placed_.position[0]);
+           owned_basis_.bytes() + placed_.position.size() * sizeof(placed_.position[0]);
   }
 
   void advance(long long steps) override {
@@ -177,21 +173,9 @@ class SimulationOf final : public Simulation {
 
  private:
   using Device = ExecutionSpace::device_type;
-  using Basis = LinearBasis<Dim, Real>;
   using Field = UniformVirtualStress<Dim, Real>;
   static_assert(max_tractions == Field::capacity,
                 "a scene may declare as many tractions as the kernels can take");
-
-  static UniformGrid<Dim, Real> make_grid(const Scene& scene) {
-    Vector<Dim, Real> lower, spacing;
-    Vector<Dim, int> cells;
-    for (int i = 0; i < Dim; ++i) {
-      lower[i] = static_cast<Real>(scene.grid.lower[static_cast<size_t>(i)]);
-      spacing[i] = static_cast<Real>(scene.grid.spacing[static_cast<size_t>(i)]);
-      cells[i] = scene.grid.cells[static_cast<size_t>(i)];
-    }
-    return {lower, spacing, cells};
-  }
 
   static Field make_field(const Scene& scene) {
     Field field{};
@@ -258,9 +242,9 @@ class SimulationOf final : public Simulation {
     const auto mask = Kokkos::create_mirror_view(state_.occupancy.tractions);
     for (int node = 0; node < basis_.node_count(); ++node) {
       const auto ijk = basis_.grid.node_coordinates(node);
-      Point x{};
-      for (size_t i = 0; i < Dim; ++i)
-        x[i] = scene_.grid.lower[i] + static_cast<double>(ijk[static_cast<int>(i)]) * scene_.grid.spacing[i];
+      std::array<int, 3> logical{};
+      for (int i = 0; i < Dim; ++i) logical[static_cast<size_t>(i)] = ijk[i];
+      const Point x = node_position(scene_.grid, Dim, logical);
       TractionMask declared = 0;
       for (size_t k = 0; k < scene_.tractions.size(); ++k)
         if (scene_.tractions[k].surface(x)) declared |= TractionMask(1) << k;
@@ -304,7 +288,7 @@ class SimulationOf final : public Simulation {
                 "a body reaches the open face {}_{} of the grid, where a traction is declared: leave at "
                 "least one empty "
                 "cell between them, or give the face a condition, or the traction another 'surface'",
-                "xyz"[i], lower ? "min" : "max"));
+                scene_.grid.axis_name(static_cast<size_t>(i)), lower ? "min" : "max"));
         }
       }
     }
@@ -330,6 +314,7 @@ class SimulationOf final : public Simulation {
   Scene scene_;
   PlacedParticles placed_;
   ExecutionSpace exec_;
+  OwnedBasis<Basis> owned_basis_;
   Basis basis_;
   Field field_;
   ParticleBlock<Dim, Real, Device> block_;
@@ -339,15 +324,18 @@ class SimulationOf final : public Simulation {
   long long step_ = 0;
 };
 
-/// Both precisions of one dimension; each dimension is compiled on its own.
+/// Both precisions of one dimension, mapped grids in double only; each dimension is compiled on its own.
 std::unique_ptr<Simulation> make_simulation_1d(const Scene& scene);
 std::unique_ptr<Simulation> make_simulation_2d(const Scene& scene);
 std::unique_ptr<Simulation> make_simulation_3d(const Scene& scene);
 
 template <int Dim>
 std::unique_ptr<Simulation> make_simulation_of(const Scene& scene) {
-  if (scene.single_precision) return std::make_unique<SimulationOf<Dim, float>>(scene);
-  return std::make_unique<SimulationOf<Dim, double>>(scene);
+  if (scene.grid.mapped())
+    return std::make_unique<SimulationOf<Dim, double, MappedLinearBasis<Dim, double>>>(scene);
+  if (scene.single_precision)
+    return std::make_unique<SimulationOf<Dim, float, LinearBasis<Dim, float>>>(scene);
+  return std::make_unique<SimulationOf<Dim, double, LinearBasis<Dim, double>>>(scene);
 }
 
 }  // namespace vsb::app
