@@ -81,19 +81,24 @@ struct MultilinearCell {
   };
   /// Newton's method from the centre. Iterates are kept in the cell, where J is regular; it ends when one no
   /// longer moves, that is, when x lies beyond a face.
-  KOKKOS_FUNCTION Inverse inverse(const Vector<Dim, T>& x) const {
+  KOKKOS_FORCEINLINE_FUNCTION Inverse inverse(const Vector<Dim, T>& x) const {
     constexpr int most_iterations = 32;
     constexpr T epsilon = std::numeric_limits<T>::epsilon();
+    Vector<Dim, T> c[corners];
+    coefficients(c);
+    c[0] -= x;
+    Inverse result{Vector<Dim, T>::zero(), false};
     Vector<Dim, T> xi;
     for (int i = 0; i < Dim; ++i) xi[i] = T(0.5);
-    Inverse result{xi, false};
     for (int iteration = 0; iteration < most_iterations; ++iteration) {
-      const Point p = at(xi);
-      if (!(determinant(p.J) > T(0))) break;
-      const auto step = vsb::inverse(p.J) * (x - p.x);
-      result.xi = xi + step;
+      Vector<Dim, T> residual;
+      Matrix<Dim, T> J;
+      evaluate(c, xi, residual, J);
+      if (!(determinant(J) > T(0))) break;
+      const auto step = vsb::inverse(J) * residual;
       T length = 0, moved = 0;
       for (int i = 0; i < Dim; ++i) {
+        result.xi[i] = xi[i] - step[i];
         const T next = math::max(T(0), math::min(T(1), result.xi[i]));
         length = math::max(length, math::abs(step[i]));
         moved = math::max(moved, math::abs(next - xi[i]));
@@ -107,6 +112,33 @@ struct MultilinearCell {
       if (moved == T(0)) break;
     }
     return result;
+  }
+
+ private:
+  /// The map as a polynomial: x = sum_a c_a prod_(i in a) xi_i.
+  KOKKOS_FORCEINLINE_FUNCTION void coefficients(Vector<Dim, T> (&c)[corners]) const {
+    for (int a = 0; a < corners; ++a) c[a] = corner[a];
+    for (int i = 0; i < Dim; ++i)
+      for (int a = 0; a < corners; ++a)
+        if (a >> i & 1) c[a] -= c[a ^ 1 << i];
+  }
+  /// The polynomial and its derivatives J(i, k) = dx_i / dxi_k.
+  KOKKOS_FORCEINLINE_FUNCTION static void evaluate(const Vector<Dim, T> (&c)[corners],
+                                                   const Vector<Dim, T>& xi, Vector<Dim, T>& x,
+                                                   Matrix<Dim, T>& J) {
+    T products[corners];
+    products[0] = T(1);
+    for (int i = 0; i < Dim; ++i)
+      for (int a = 0; a < 1 << i; ++a) products[a | 1 << i] = products[a] * xi[i];
+    for (int i = 0; i < Dim; ++i) {
+      x[i] = c[0][i];
+      for (int a = 1; a < corners; ++a) x[i] += c[a][i] * products[a];
+      for (int k = 0; k < Dim; ++k) {
+        J(i, k) = c[1 << k][i];
+        for (int a = 0; a < corners; ++a)
+          if ((a >> k & 1) && a != 1 << k) J(i, k) += c[a][i] * products[a ^ 1 << k];
+      }
+    }
   }
 };
 
