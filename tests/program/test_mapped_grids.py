@@ -150,7 +150,7 @@ class Refused(ProgramTest):
         for axis, words in (("x = [0.0]", ("grid.x", "at least two")), ("x = []", ("grid.x", "at least two")),
                             ("x = 3.0", ("grid.x", "at least two")), ("x = [0.0, 'a']", ("grid.x[1]",)),
                             ("x = [0.0, 1.0, 1.0]", ("grid.x[2]", "> 1.0")), ("x = [0.0, 2.0, 1.0]", ("grid.x[2]",)),
-                            ("x = [0.0, inf]", ("grid.x[1]",)), ("y = [0.0, 1.0]", ("grid.x is missing",)),
+                            ("x = [0.0, inf]", ("grid.x[1]",)), ("y = [0.0, 1.0]", ("unknown key 'y'",)),
                             ("x = [0.0, 1.0]\ny = [0.0, 1.0]", ("unknown key 'y'",)),
                             ("x = [0.0, 12.0]\nspacing = 1.0", ("either lower, upper and spacing",)),
                             ("polar = { radii = [1.0, 2.0] }", ("dimension 2 or 3",))):
@@ -183,7 +183,10 @@ class Refused(ProgramTest):
 
     def test_a_body_at_an_open_face_under_a_traction(self):
         self.refuse(replaced(POLAR, ('theta_min = ["y"]', 'theta_min = "open"')), "open face theta_min")
-        self.refuse(replaced(POLAR, ("[0.5, 5.5], radial_cells = 10", "[1.0, 5.5], radial_cells = 9")), "open face r_min")
+        surface = "surface = { disc = { center = [0.0, 0.0], radius = 3.0 } }\n"
+        self.refuse(replaced(POLAR, ("[0.5, 5.5], radial_cells = 10", "[0.5, 5.0], radial_cells = 9"), (surface, "")),
+                    "open face r_max")
+        self.refuse(replaced(POLAR, ("[0.5, 5.5], radial_cells = 10", "[1.0, 5.5], radial_cells = 9")), "finds no boundary node")
 
     def test_single_precision(self):
         self.refuse('precision = "float"\n' + POLAR, "precision", "double")
