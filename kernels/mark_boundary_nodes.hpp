@@ -11,7 +11,7 @@
 /// boundary needs a void cell beyond it.
 #pragma once
 
-#include <vsb/physics/uniform_grid.hpp>
+#include <vsb/physics/cell_numbering.hpp>
 #include <vsb/views/nodes.hpp>
 #include <vsb/views/particles.hpp>
 
@@ -36,8 +36,7 @@ struct BitRows {
   Vector<2, int> node_rows;  ///< rows of nodes in y and z
   int words;                 ///< words per row, of cells and of nodes
 
-  template <class Real>
-  KOKKOS_FUNCTION explicit BitRows(const UniformGrid<Dim, Real>& grid) : cells_x(grid.cells[0]) {
+  KOKKOS_FUNCTION explicit BitRows(const CellNumbering<Dim>& grid) : cells_x(grid.cells[0]) {
     for (int i = 0; i < 2; ++i) {
       cell_rows[i] = i + 1 < Dim ? grid.cells[i + 1] : 1;
       node_rows[i] = i + 1 < Dim ? grid.cells[i + 1] + 1 : 1;
@@ -49,8 +48,8 @@ struct BitRows {
 };
 
 /// Allocates bit sets for a grid.
-template <class Device, int Dim, class Real>
-CellBits<Device> allocate_cell_bits(const UniformGrid<Dim, Real>& grid) {
+template <class Device, int Dim>
+CellBits<Device> allocate_cell_bits(const CellNumbering<Dim>& grid) {
   const BitRows<Dim> rows(grid);
   const auto r = static_cast<size_t>(rows.cell_row_count()), w = static_cast<size_t>(rows.words);
   using Rows = typename CellBits<Device>::Rows;
@@ -61,14 +60,14 @@ CellBits<Device> allocate_cell_bits(const UniformGrid<Dim, Real>& grid) {
 namespace kernel {
 
 /// One particle: marks its cell as non-void.
-template <int Dim, class Real, class Device>
+template <class Grid, int Dim, class Real, class Device>
 struct MarkOccupied {
   Particles<Dim, Real, Device> particles;
-  UniformGrid<Dim, Real> grid;
+  Grid grid;
   typename CellBits<Device>::Rows occupied;
 
   KOKKOS_FUNCTION void operator()(int p) const {
-    const auto cell = grid.cell_of(grid.in_cells(particles.position_of(p)));
+    const auto cell = grid.cell_containing(particles.position_of(p));
     int row = 0;
     for (int i = Dim - 1; i > 0; --i) row = row * grid.cells[i] + cell[i];
     Kokkos::atomic_fetch_or(&occupied(row, cell[0] / 64), std::uint64_t(1) << (cell[0] % 64));
@@ -172,16 +171,16 @@ struct MarkNodes {
 /// Overwrites boundary[node] with tractions[node] at the nodes of N1 and with 0 elsewhere. tractions[node]
 /// says which tractions are declared at the place of a node (bit k: traction k). All particles must lie in
 /// the grid. Returns the number of nodes at which a traction acts; waits for the device.
-template <class Exec, int Dim, class Real, class Device>
+template <class Exec, class Grid, int Dim, class Real, class Device>
 int mark_boundary_nodes(const Exec& exec, const Particles<Dim, Real, Device>& particles,
-                        const CellBits<Device>& bits, const UniformGrid<Dim, Real>& grid,
+                        const CellBits<Device>& bits, const Grid& grid,
                         const BoundaryNodes<Device>& tractions, const BoundaryNodes<Device>& boundary) {
   const BitRows<Dim> tiling(grid);
   const Kokkos::RangePolicy<Exec> over_cell_words(exec, 0, tiling.cell_row_count() * tiling.words);
   const Kokkos::RangePolicy<Exec> over_node_words(exec, 0, tiling.node_row_count() * tiling.words);
   Kokkos::deep_copy(exec, bits.occupied, std::uint64_t(0));
   Kokkos::parallel_for("vsb::mark_occupied", Kokkos::RangePolicy<Exec>(exec, 0, particles.count()),
-                       kernel::MarkOccupied<Dim, Real, Device>{particles, grid, bits.occupied});
+                       kernel::MarkOccupied<Grid, Dim, Real, Device>{particles, grid, bits.occupied});
   Kokkos::parallel_for("vsb::find_exterior_cells", over_cell_words,
                        kernel::FindExterior<Dim, Device>{bits, tiling});
   Kokkos::parallel_for("vsb::find_boundary_cells", over_cell_words,

@@ -16,15 +16,15 @@ namespace vsb {
 
 namespace kernel {
 
-/// One word of cells: those filled by less than `minimum_volume`; counts the words that
+/// One word of cells: those that are filled too little; counts the words that
 /// change. The bin of a cell is the number of its lowest node.
-template <int Dim, class Real, class Device>
+template <class Grid, int Dim, class Real, class Device>
 struct MarkUnderfilled {
   Particles<Dim, Real, Device> particles;
   ParticleBins<Device> bins;
-  UniformGrid<Dim, Real> grid;
+  Grid grid;
   BitRows<Dim> tiling;
-  Real minimum_volume;  ///< m^3 (area in 2D, length in 1D)
+  Real minimum_fill;  ///< of the cell's volume
   typename CellBits<Device>::Rows underfilled;
 
   KOKKOS_FUNCTION void operator()(int i, int& changed) const {
@@ -35,16 +35,16 @@ struct MarkUnderfilled {
     if constexpr (Dim > 2) cell[2] = r / tiling.cell_rows[0];
     const int first_bin = grid.node_index(cell), cells = math::min(tiling.cells_x - 64 * w, 64);
     std::uint64_t word = 0;
-    for (int b = 0; b < cells; ++b)
-      if (is_underfilled(first_bin + b)) word |= std::uint64_t(1) << b;
+    for (int b = 0; b < cells; ++b, ++cell[0])
+      if (is_underfilled(first_bin + b, cell)) word |= std::uint64_t(1) << b;
     if (word != underfilled(r, w)) ++changed;
     underfilled(r, w) = word;
   }
 
-  KOKKOS_FUNCTION bool is_underfilled(int bin) const {
+  KOKKOS_FUNCTION bool is_underfilled(int bin, const Vector<Dim, int>& cell) const {
     Real volume = 0;
     for (int k = bins.offset(bin); k < bins.offset(bin + 1); ++k) volume += particles.volume(bins.order(k));
-    return volume < minimum_volume;
+    return volume < minimum_fill * grid.cell_volume(cell);
   }
 };
 
@@ -53,18 +53,17 @@ struct MarkUnderfilled {
 /// Overwrites `underfilled` with the cells of which the particles fill less than `minimum_fill`. Void cells
 /// are among them and change nothing: they are of E1, or have no active node. Returns whether this changed
 /// any; waits for the device.
-template <class Exec, int Dim, class Real, class Device>
+template <class Exec, class Grid, int Dim, class Real, class Device>
 bool mark_underfilled_cells(const Exec& exec, const Particles<Dim, Real, Device>& particles,
-                            const ParticleBins<Device>& bins, const UniformGrid<Dim, Real>& grid,
-                            double minimum_fill, const typename CellBits<Device>::Rows& underfilled) {
+                            const ParticleBins<Device>& bins, const Grid& grid, double minimum_fill,
+                            const typename CellBits<Device>::Rows& underfilled) {
   const BitRows<Dim> tiling(grid);
-  const Real minimum_volume = static_cast<Real>(minimum_fill) * grid.cell_volume();
   int changed = 0;
-  Kokkos::parallel_reduce(
-      "vsb::mark_underfilled_cells",
-      Kokkos::RangePolicy<Exec>(exec, 0, tiling.cell_row_count() * tiling.words),
-      kernel::MarkUnderfilled<Dim, Real, Device>{particles, bins, grid, tiling, minimum_volume, underfilled},
-      changed);
+  Kokkos::parallel_reduce("vsb::mark_underfilled_cells",
+                          Kokkos::RangePolicy<Exec>(exec, 0, tiling.cell_row_count() * tiling.words),
+                          kernel::MarkUnderfilled<Grid, Dim, Real, Device>{
+                              particles, bins, grid, tiling, static_cast<Real>(minimum_fill), underfilled},
+                          changed);
   exec.fence();
   return changed > 0;
 }

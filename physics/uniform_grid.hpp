@@ -1,68 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// A uniform background grid: axis-parallel cells of equal size. Nodes and cells are numbered along x first.
+/// A uniform background grid: axis-parallel cells of equal size.
+///
+/// What a kernel asks of any grid: the numbering of its nodes and cells, node_position(node), contains(x),
+/// cell_containing(x) and cell_volume(cell).
 #pragma once
 
 #include <limits>
-#include <vsb/views/tensor.hpp>
+#include <vsb/physics/cell_numbering.hpp>
 
 namespace vsb {
 
 template <int Dim, class Real>
-struct UniformGrid {
-  static_assert(Dim >= 1 && Dim <= 3, "UniformGrid: dimension 1, 2 or 3");
-  static constexpr int dimension = Dim;
+struct UniformGrid : CellNumbering<Dim> {
+  using CellNumbering<Dim>::cells;
   using real = Real;
 
   Vector<Dim, Real> lower;            ///< position of node 0, m
   Vector<Dim, Real> spacing;          ///< cell size, m
   Vector<Dim, Real> inverse_spacing;  ///< 1/m
-  Vector<Dim, int> cells;             ///< cells in each direction
 
   UniformGrid() = default;
   KOKKOS_FUNCTION UniformGrid(const Vector<Dim, Real>& lower_corner, const Vector<Dim, Real>& cell_size,
                               const Vector<Dim, int>& cell_count)
-      : lower(lower_corner), spacing(cell_size), cells(cell_count) {
+      : CellNumbering<Dim>{cell_count}, lower(lower_corner), spacing(cell_size) {
     for (int i = 0; i < Dim; ++i) inverse_spacing[i] = Real(1) / spacing[i];
   }
 
-  KOKKOS_FUNCTION int node_count() const {
-    int n = 1;
-    for (int i = 0; i < Dim; ++i) n *= cells[i] + 1;
-    return n;
-  }
-  KOKKOS_FUNCTION int cell_count() const {
-    int n = 1;
-    for (int i = 0; i < Dim; ++i) n *= cells[i];
-    return n;
-  }
   KOKKOS_FUNCTION Real cell_volume() const {
     Real v = spacing[0];
     for (int i = 1; i < Dim; ++i) v *= spacing[i];
     return v;
   }
+  KOKKOS_FUNCTION Real cell_volume(const Vector<Dim, int>&) const { return cell_volume(); }
 
-  /// Distance in node numbers between neighbours in direction `axis`.
-  KOKKOS_FUNCTION int node_stride(int axis) const {
-    int stride = 1;
-    for (int i = 0; i < axis; ++i) stride *= cells[i] + 1;
-    return stride;
-  }
-  KOKKOS_FUNCTION int node_index(const Vector<Dim, int>& ijk) const {
-    int index = 0;
-    for (int i = Dim - 1; i >= 0; --i) index = index * (cells[i] + 1) + ijk[i];
-    return index;
-  }
-  KOKKOS_FUNCTION Vector<Dim, int> node_coordinates(int node) const {
-    Vector<Dim, int> ijk;
-    for (int i = 0; i < Dim; ++i) {
-      ijk[i] = node % (cells[i] + 1);
-      node /= cells[i] + 1;
-    }
-    return ijk;
-  }
   KOKKOS_FUNCTION Vector<Dim, Real> node_position(int node) const {
-    const auto ijk = node_coordinates(node);
+    const auto ijk = this->node_coordinates(node);
     Vector<Dim, Real> x;
     for (int i = 0; i < Dim; ++i) x[i] = lower[i] + static_cast<Real>(ijk[i]) * spacing[i];
     return x;
@@ -74,13 +47,9 @@ struct UniformGrid {
     for (int i = 0; i < Dim; ++i) q[i] = (x[i] - lower[i]) * inverse_spacing[i];
     return q;
   }
-  /// The place with local coordinates xi in [0, 1] of a cell, and the cell's volume per volume of [0, 1]^Dim.
-  struct Place {
-    Vector<Dim, Real> x;
-    Real volume_ratio;
-  };
-  KOKKOS_FUNCTION Place map(const Vector<Dim, int>& cell, const Vector<Dim, Real>& xi) const {
-    Place place{{}, cell_volume()};
+  /// The place with local coordinates xi in [0, 1]^Dim of a cell.
+  KOKKOS_FUNCTION CellPoint<Dim, Real> map(const Vector<Dim, int>& cell, const Vector<Dim, Real>& xi) const {
+    CellPoint<Dim, Real> place{{}, cell_volume()};
     for (int i = 0; i < Dim; ++i) place.x[i] = lower[i] + (static_cast<Real>(cell[i]) + xi[i]) * spacing[i];
     return place;
   }

@@ -7,7 +7,9 @@
 #include <limits>
 #include <random>
 #include <vector>
+#include <vsb/kernels/make_mapped_mesh.hpp>
 #include <vsb/physics/linear_basis.hpp>
+#include <vsb/physics/mapped_basis.hpp>
 #include <vsb/views/particles.hpp>
 
 #include "catch.hpp"
@@ -96,9 +98,23 @@ UniformGrid<Dim, Real> make_grid(const Vector<3, int>& cells = {{5, 4, 3}}) {
   return {lower, spacing, count};
 }
 
+/// The same nodes, each moved by up to `share` of the cell size in every direction. A share below 1 / (2 Dim)
+/// leaves det J positive at every corner, by diagonal dominance.
+template <int Dim, class Real, class To = Device>
+MappedMesh<Dim, Real, To> make_distorted_mesh(double share, const Vector<3, int>& cells = {{5, 4, 3}},
+                                              unsigned seed = 5) {
+  const auto grid = make_grid<Dim, Real>(cells);
+  Random random(seed);
+  return make_mapped_mesh<Real, To>(grid.cells, [&](const Vector<Dim, int>& ijk) {
+    auto x = grid.node_position(grid.node_index(ijk));
+    for (int i = 0; i < Dim; ++i) x[i] += random.draw<Real>(-share, share) * grid.spacing[i];
+    return x;
+  });
+}
+
 /// Each cell of a grid, by its coordinates.
-template <int Dim, class Real, class Visit>
-void for_each_cell(const UniformGrid<Dim, Real>& grid, const Visit& visit) {
+template <int Dim, class Visit>
+void for_each_cell(const CellNumbering<Dim>& grid, const Visit& visit) {
   Vector<Dim, int> cell = Vector<Dim, int>::zero();
   for (int n = 0; n < grid.cell_count(); ++n) {
     visit(cell);

@@ -108,6 +108,18 @@ KOKKOS_INLINE_FUNCTION Matrix<Dim, T> cofactor(const Matrix<Dim, T>& m) {
   return c;
 }
 
+/// The inverse of a regular tensor.
+template <int Dim, class T>
+KOKKOS_INLINE_FUNCTION Matrix<Dim, T> inverse(const Matrix<Dim, T>& m) {
+  const T factor = T(1) / determinant(m);
+  const auto c = cofactor(m);
+  Matrix<Dim, T> r;
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j) r(i, j) = factor * c(j, i);
+  return r;
+}
+
+/// m . v.
 template <int Dim, class T>
 KOKKOS_INLINE_FUNCTION Vector<Dim, T> operator*(const Matrix<Dim, T>& m, const Vector<Dim, T>& v) {
   Vector<Dim, T> r;

@@ -162,10 +162,9 @@ void Results::write_grid_frame(const GridSnapshot& grid, long long step, double 
   for (size_t k = 0; k < nodes[2]; ++k)
     for (size_t j = 0; j < nodes[1]; ++j)
       for (size_t i = 0; i < nodes[0]; ++i) {
-        const std::array<size_t, 3> ijk{i, j, k};
-        for (size_t c = 0; c < 3; ++c)
-          mesh.points.push_back(
-              c < d ? scene_.grid.lower[c] + static_cast<double>(ijk[c]) * scene_.grid.spacing[c] : 0.0);
+        const Point x = node_position(scene_.grid, scene_.dimension,
+                                      {static_cast<int>(i), static_cast<int>(j), static_cast<int>(k)});
+        mesh.points.insert(mesh.points.end(), x.begin(), x.end());
       }
   constexpr std::array<std::array<size_t, 3>, 8> corners{
       {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};

@@ -2,6 +2,7 @@
 #include "run/body_surface.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace vsb::app {
@@ -122,11 +123,15 @@ std::vector<SurfacePiece> surface_pieces(const Region& region, const SurfaceBox&
 }
 
 SurfaceBox surface_box(const Scene& scene, int per_cell) {
+  const auto around = bounding_box(scene.grid, scene.dimension);
+  const double shortest = shortest_edge(scene.grid, scene.dimension);
   SurfaceBox box{scene.dimension, {}, {}, {}};
   for (size_t i = 0; i < static_cast<size_t>(scene.dimension); ++i) {
-    box.lower[i] = scene.grid.lower[i];
-    box.interval[i] = scene.grid.spacing[i] / per_cell;
-    box.intervals[i] = scene.grid.cells[i] * per_cell;
+    box.lower[i] = around.lower[i];
+    const double length = around.upper[i] - around.lower[i];
+    const double h = scene.grid.mapped() ? shortest : scene.grid.spacing[i];
+    box.intervals[i] = std::max(1, static_cast<int>(std::lround(length / h * per_cell)));
+    box.interval[i] = length / box.intervals[i];
   }
   return box;
 }

@@ -30,13 +30,13 @@ using Visit = std::function<void(const LatticePoint&)>;
 void visit_points(const UniformLattice& lattice, const Scene& scene, const Jitter& jitter,
                   const Visit& visit) {
   const auto d = static_cast<size_t>(scene.dimension);
+  const auto box = bounding_box(scene.grid, scene.dimension);
   Index first{0, 0, 0}, last{1, 1, 1};
   double volume = 1;
   for (size_t i = 0; i < d; ++i) {
-    const double begin = (scene.grid.lower[i] - lattice.origin[i]) / lattice.spacing[i];
+    const double begin = (box.lower[i] - lattice.origin[i]) / lattice.spacing[i];
     first[i] = static_cast<long long>(std::floor(begin));
-    last[i] = static_cast<long long>(
-        std::ceil(begin + scene.grid.cells[i] * scene.grid.spacing[i] / lattice.spacing[i]));
+    last[i] = static_cast<long long>(std::ceil(begin + (box.upper[i] - box.lower[i]) / lattice.spacing[i]));
     volume *= lattice.spacing[i];
   }
   for (long long k = first[2]; k < last[2]; ++k)
@@ -54,6 +54,18 @@ void visit_points(const UniformLattice& lattice, const Scene& scene, const Jitte
 }
 
 void visit_points(const CellLattice& lattice, const Scene& scene, const Jitter& jitter, const Visit& visit) {
+  if (scene.grid.mapped()) {
+    Index last{1, 1, 1};
+    for (size_t i = 0; i < static_cast<size_t>(scene.dimension); ++i)
+      last[i] = static_cast<long long>(scene.grid.cells[i]) * lattice.particles_per_cell[i];
+    for (long long k = 0; k < last[2]; ++k)
+      for (long long j = 0; j < last[1]; ++j)
+        for (long long i = 0; i < last[0]; ++i) {
+          const auto share = cell_share(scene.grid, scene.dimension, lattice.particles_per_cell, {i, j, k});
+          visit({share.position, share.volume, {}});
+        }
+    return;
+  }
   UniformLattice uniform;
   uniform.origin = scene.grid.lower;
   for (size_t i = 0; i < 3; ++i) uniform.spacing[i] = scene.grid.spacing[i] / lattice.particles_per_cell[i];

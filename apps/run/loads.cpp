@@ -94,8 +94,8 @@ std::vector<LoadedPoint> loaded_points(const Scene& scene, const PlacedParticles
         points.push_back({piece.position, piece.area, mask, carried_by_grid});
       });
     if (traction.imposition == Imposition::material_points) {
-      const auto& h = scene.grid.spacing;
-      const double reach = 2 * *std::max_element(h.begin(), h.begin() + scene.dimension);
+      const double largest = *std::max_element(placed.volume.begin(), placed.volume.end());
+      const double reach = 4 * std::pow(largest, 1.0 / scene.dimension);
       const NearestParticle nearest(placed, traction.layer, reach);
       std::map<int, Point> area;
       for_each_piece(scene, k, [&](const SurfacePiece& piece) {

@@ -13,10 +13,7 @@ namespace vsb::app {
 namespace {
 
 bool in_grid(const Scene& scene, const Point& x) {
-  const auto& grid = scene.grid;
-  for (size_t i = 0; i < static_cast<size_t>(scene.dimension); ++i)
-    if (!(x[i] >= grid.lower[i] && x[i] <= grid.lower[i] + grid.cells[i] * grid.spacing[i])) return false;
-  return true;
+  return contains(scene.grid, scene.dimension, x);
 }
 
 }  // namespace

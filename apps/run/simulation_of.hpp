@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The simulation of a scene in a given dimension and precision, on the backend of this build.
+/// The simulation of a scene in a given dimension, precision and basis, on the backend of this build.
 #pragma once
 
 #include <fmt/format.h>
@@ -10,27 +10,23 @@
 #include <vsb/kernels/balance.hpp>
 #include <vsb/kernels/flag_boundary_particles.hpp>
 #include <vsb/kernels/health.hpp>
-#include <vsb/physics/linear_basis.hpp>
+#include "run/basis_of.hpp"
 #include "run/grid_lines.hpp"
 #include "run/loads.hpp"
 #include "run/simulation.hpp"
 
 namespace vsb::app {
 
-#if defined(VSB_BACKEND_CUDA)
-using ExecutionSpace = Kokkos::Cuda;
-#elif defined(VSB_BACKEND_OPENMP)
-using ExecutionSpace = Kokkos::OpenMP;
-#else
-using ExecutionSpace = Kokkos::Serial;
-#endif
-
-template <int Dim, class Real>
+template <int Dim, class Real, class Basis>
 class SimulationOf final : public Simulation {
  public:
   explicit SimulationOf(const Scene& scene)
-      : scene_(scene), placed_(place_particles(scene)), basis_{make_grid(scene)}, loads_(scene) {
-    refuse_on_grid_lines(scene, placed_);
+      : scene_(scene),
+        placed_(place_particles(scene)),
+        owned_basis_(scene.grid),
+        basis_(owned_basis_.basis),
+        loads_(scene) {
+    if (!scene.grid.mapped()) refuse_on_grid_lines(scene, placed_);
     block_ = allocate_particles<Dim, Real, Device>(static_cast<int>(placed_.position.size()));
     fill_particles();
     state_ = make_state(block_.particles, basis_);
@@ -63,7 +59,7 @@ class SimulationOf final : public Simulation {
                  o.bins.bin, o.bins.order, o.bins.offset, o.bins.cursor, o.bins.slot, o.bins.occupied,
                  o.cells.occupied, o.cells.exterior, o.cells.boundary, o.cells.underfilled, o.tractions,
                  o.boundary, state_.sums_workspace.particles.bin_sums, state_.remap_workspace.bin_sums) +
-           placed_.position.size() * sizeof(placed_.position[0]);
+           owned_basis_.bytes() + placed_.position.size() * sizeof(placed_.position[0]);
   }
 
   void advance(long long steps) override {
@@ -212,20 +208,8 @@ class SimulationOf final : public Simulation {
   }
 
   using Device = ExecutionSpace::device_type;
-  using Basis = LinearBasis<Dim, Real>;
   static_assert(max_tractions == UniformVirtualStress<Dim, Real>::capacity,
                 "a scene may declare as many tractions as the kernels can take");
-
-  static UniformGrid<Dim, Real> make_grid(const Scene& scene) {
-    Vector<Dim, Real> lower, spacing;
-    Vector<Dim, int> cells;
-    for (int i = 0; i < Dim; ++i) {
-      lower[i] = static_cast<Real>(scene.grid.lower[static_cast<size_t>(i)]);
-      spacing[i] = static_cast<Real>(scene.grid.spacing[static_cast<size_t>(i)]);
-      cells[i] = scene.grid.cells[static_cast<size_t>(i)];
-    }
-    return {lower, spacing, cells};
-  }
 
   double time() const { return static_cast<double>(step_) * scene_.time.dt; }
 
@@ -280,10 +264,9 @@ class SimulationOf final : public Simulation {
     const auto mask = Kokkos::create_mirror_view(state_.occupancy.tractions);
     for (int node = 0; node < basis_.node_count(); ++node) {
       const auto ijk = basis_.grid.node_coordinates(node);
-      Point x{};
-      for (size_t i = 0; i < Dim; ++i)
-        x[i] = scene_.grid.lower[i] + static_cast<double>(ijk[static_cast<int>(i)]) * scene_.grid.spacing[i];
-      mask(node) = tractions_at(scene_, loads_.on_nodes(), x);
+      std::array<int, 3> logical{};
+      for (int i = 0; i < Dim; ++i) logical[static_cast<size_t>(i)] = ijk[i];
+      mask(node) = tractions_at(scene_, loads_.on_nodes(), node_position(scene_.grid, Dim, logical));
     }
     Kokkos::deep_copy(state_.occupancy.tractions, mask);
   }
@@ -293,10 +276,7 @@ class SimulationOf final : public Simulation {
     auto points = loaded_points(scene_, placed_);
     std::vector<bool> occupied(static_cast<size_t>(basis_.grid.cell_count()));
     for (const Point& x : placed_.position) {
-      const auto cell = basis_.grid.cell_containing(to_vector(x));
-      int index = 0;
-      for (int i = Dim - 1; i >= 0; --i) index = index * basis_.grid.cells[i] + cell[i];
-      occupied[static_cast<size_t>(index)] = true;
+      occupied[static_cast<size_t>(basis_.grid.cell_index(basis_.grid.cell_containing(to_vector(x))))] = true;
     }
     const auto conforming = conforming_points<Dim>(scene_, basis_.grid, occupied);
     points.insert(points.end(), conforming.begin(), conforming.end());
@@ -346,14 +326,14 @@ class SimulationOf final : public Simulation {
             "traction '{}' finds no surface of a body{}, so it would load nothing: check its 'surface'",
             scene_.tractions[k].name,
             scene_.tractions[k].imposition == Imposition::nodal ? " that follows faces of cells" : ""));
-      throw SetupError(
-          fmt::format("traction '{}' finds no boundary node, so it would load nothing. A boundary node "
-                      "belongs to a cell without "
-                      "particles or to one that touches such a cell; leave at least one empty cell beyond "
-                      "the loaded boundary "
-                      "(a smaller grid spacing, or a larger grid), or set method.fill_criterion, and check the "
-                      "traction's 'surface'",
-                      scene_.tractions[k].name));
+      throw SetupError(fmt::format(
+          "traction '{}' finds no boundary node, so it would load nothing. A boundary node "
+          "belongs to a cell without "
+          "particles or to one that touches such a cell; leave at least one empty cell beyond "
+          "the loaded boundary "
+          "(a smaller grid spacing, or a larger grid), or set method.fill_criterion, and check the "
+          "traction's 'surface'",
+          scene_.tractions[k].name));
     }
     for (size_t p = 0; p < placed_.position.size(); ++p) {
       const auto shape = basis_.shape(to_vector(placed_.position[p]));
@@ -369,7 +349,7 @@ class SimulationOf final : public Simulation {
                 "a body reaches the open face {}_{} of the grid, where a traction is declared: leave at "
                 "least one empty "
                 "cell between them, or give the face a condition, or the traction another 'surface'",
-                "xyz"[i], lower ? "min" : "max"));
+                scene_.grid.axis_name(static_cast<size_t>(i)), lower ? "min" : "max"));
         }
       }
     }
@@ -399,6 +379,7 @@ class SimulationOf final : public Simulation {
   Scene scene_;
   PlacedParticles placed_;
   ExecutionSpace exec_;
+  OwnedBasis<Basis> owned_basis_;
   Basis basis_;
   Loads<Dim, Real> loads_;
   std::vector<Resultant> resultants_;  ///< of each traction at full load
@@ -410,15 +391,18 @@ class SimulationOf final : public Simulation {
   long long step_ = 0;
 };
 
-/// Both precisions of one dimension; each dimension is compiled on its own.
+/// Both precisions of one dimension, mapped grids in double only; each dimension is compiled on its own.
 std::unique_ptr<Simulation> make_simulation_1d(const Scene& scene);
 std::unique_ptr<Simulation> make_simulation_2d(const Scene& scene);
 std::unique_ptr<Simulation> make_simulation_3d(const Scene& scene);
 
 template <int Dim>
 std::unique_ptr<Simulation> make_simulation_of(const Scene& scene) {
-  if (scene.single_precision) return std::make_unique<SimulationOf<Dim, float>>(scene);
-  return std::make_unique<SimulationOf<Dim, double>>(scene);
+  if (scene.grid.mapped())
+    return std::make_unique<SimulationOf<Dim, double, MappedLinearBasis<Dim, double>>>(scene);
+  if (scene.single_precision)
+    return std::make_unique<SimulationOf<Dim, float, LinearBasis<Dim, float>>>(scene);
+  return std::make_unique<SimulationOf<Dim, double, LinearBasis<Dim, double>>>(scene);
 }
 
 }  // namespace vsb::app

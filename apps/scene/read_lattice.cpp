@@ -23,16 +23,18 @@ CellLattice read_cells(TableReader& body_table, size_t d) {
 UniformLattice read_uniform(TableReader r, const GridSpec& grid, size_t d) {
   UniformLattice lattice;
   const auto spacing = r.number_or_numbers("spacing", d, Range::positive(), {}, "m");
-  const std::vector<double> lower(grid.lower.begin(), grid.lower.begin() + static_cast<std::ptrdiff_t>(d));
+  const Point corner = bounding_box(grid, static_cast<int>(d)).lower;
+  const std::vector<double> lower(corner.begin(), corner.begin() + static_cast<std::ptrdiff_t>(d));
   const auto origin =
       r.numbers("origin", d, Range::any(), lower, "m; particles at origin + (k + 1/2) spacing");
   r.finish();
   std::copy(spacing.begin(), spacing.end(), lattice.spacing.begin());
   std::copy(origin.begin(), origin.end(), lattice.origin.begin());
+  const auto box = bounding_box(grid, static_cast<int>(d));
   double points = 1;
   for (size_t i = 0; i < d; ++i) {
-    points *= grid.cells[i] * grid.spacing[i] / spacing[i];
-    if (std::abs(grid.lower[i] - origin[i]) > 1e9 * spacing[i])
+    points *= (box.upper[i] - box.lower[i]) / spacing[i];
+    if (std::abs(box.lower[i] - origin[i]) > 1e9 * spacing[i])
       r.fail(*r.source().get("origin"), "origin", "must lie within 1e9 spacings of the grid's lower corner");
   }
   if (!(points <= 1e10))
@@ -105,6 +107,9 @@ void read_lattice(TableReader& body_table, const GridSpec& grid, int dimension, 
   body.jitter.amount =
       body_table.number("jitter", {0, 0.5, false, true}, 0.0,
                         "random shift of every particle, in spacings: at most this either way");
+  if (body.jitter.amount > 0 && grid.mapped() && std::holds_alternative<CellLattice>(body.lattice))
+    body_table.fail(*body_table.source().get("jitter"), "jitter",
+                    "is for uniform grids and for lattice.uniform, not for particles_per_cell on this grid");
   body.jitter.seed = static_cast<std::uint64_t>(
       body_table.integer("seed", 0, std::numeric_limits<long long>::max(), 1, "of the random shifts"));
 }

@@ -7,6 +7,7 @@
 
 #include <vsb/physics/explicit_dynamics.hpp>
 #include <vsb/physics/linear_elastic.hpp>
+#include "scene/read_grid.hpp"
 #include "scene/read_lattice.hpp"
 #include "scene/read_region.hpp"
 #include "scene/scene.hpp"
@@ -18,57 +19,6 @@ namespace vsb::app {
 namespace {
 
 const std::vector<std::string> axis_names = {"x", "y", "z"};
-
-GridSpec read_grid(TableReader r, int dimension) {
-  const auto d = static_cast<size_t>(dimension);
-  GridSpec grid;
-  const auto lower = r.numbers("lower", d, Range::any(), {}, "m, corner of the grid");
-  const auto upper = r.numbers("upper", d, Range::any(), {}, "m, opposite corner");
-  const auto spacing = r.number_or_numbers("spacing", d, Range::positive(), {}, "m, cell size");
-  r.finish();
-  double nodes = 1;
-  for (size_t i = 0; i < d; ++i) {
-    const double cells = (upper[i] - lower[i]) / spacing[i];
-    const double rounded = std::round(cells);
-    if (!(rounded >= 1) || std::abs(cells - rounded) > 1e-6 * rounded)
-      r.fail(*r.source().get("upper"), "upper",
-             fmt::format(
-                 "must lie a whole number of cells (>= 1) above 'lower'; in {} there are {} cells of {} m",
-                 axis_names[i], cells, spacing[i]));
-    nodes *= rounded + 1;
-    if (nodes > 1e9)
-      r.fail(*r.source().get("spacing"), "spacing",
-             fmt::format("the grid must have <= 1e9 nodes, not {:.3g}", nodes));
-    grid.lower[i] = lower[i];
-    grid.spacing[i] = spacing[i];
-    grid.cells[i] = static_cast<int>(rounded);
-  }
-  return grid;
-}
-
-FaceSpec read_faces(TableReader r, int dimension) {
-  FaceSpec faces;
-  const auto all = static_cast<unsigned char>((1 << dimension) - 1);
-  for (size_t axis = 0; axis < static_cast<size_t>(dimension); ++axis)
-    for (size_t side = 0; side < 2; ++side) {
-      const std::string key = axis_names[axis] + (side == 0 ? "_min" : "_max");
-      const toml::node* written = r.source().get(key);
-      if (written && written->is_array()) {
-        const std::vector<std::string> allowed(axis_names.begin(), axis_names.begin() + dimension);
-        if (written->as_array()->empty())
-          r.fail(*written, key, "must name a component; an open face is 'open'");
-        for (const auto& component : r.texts(key, allowed))
-          faces.fixed[axis][side] =
-              static_cast<unsigned char>(faces.fixed[axis][side] | 1 << (component[0] - 'x'));
-        continue;
-      }
-      const std::string kind = r.choice(key, {"open", "roller", "fixed"}, "open");
-      if (kind == "roller") faces.fixed[axis][side] = static_cast<unsigned char>(1 << axis);
-      if (kind == "fixed") faces.fixed[axis][side] = all;
-    }
-  r.finish();
-  return faces;
-}
 
 LinearElasticSpec read_material(TableReader r) {
   r.choice("law", {"linear_elastic"}, "linear_elastic");
@@ -264,8 +214,7 @@ MethodSpec read_method(TableReader r) {
 
 /// The shortest of the bodies' times for a compression wave to cross a cell: dt of Eq. (29) for kappa = 1.
 double critical_time(const Scene& scene) {
-  const auto& h = scene.grid.spacing;
-  const double smallest = *std::min_element(h.begin(), h.begin() + scene.dimension);
+  const double smallest = shortest_edge(scene.grid, scene.dimension);
   double shortest = std::numeric_limits<double>::infinity();
   for (const auto& body : scene.bodies) {
     const auto m =
@@ -387,7 +336,9 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
   std::copy(gravity.begin(), gravity.end(), scene.gravity.begin());
   if (!r.has("grid")) r.missing("grid", "a table with lower, upper and spacing");
   scene.grid = read_grid(r.table("grid"), scene.dimension);
-  scene.faces = read_faces(r.table("faces"), scene.dimension);
+  if (scene.grid.mapped() && scene.single_precision)
+    r.fail(*document.get("precision"), "precision", "rectilinear and polar grids are for double precision");
+  scene.faces = read_faces(r.table("faces"), scene.dimension, scene.grid);
   for (auto& table : r.tables("body"))
     scene.bodies.push_back(read_body(table, scene.grid, scene.dimension, scene.bodies.size()));
   if (scene.bodies.empty()) r.missing("body", "at least one table [[body]]");

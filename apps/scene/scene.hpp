@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "scene/grid_spec.hpp"
 #include "scene/lattice.hpp"
 #include "scene/region.hpp"
 #include "scene/time_function.hpp"
@@ -33,14 +34,9 @@ struct Affine {
   }
 };
 
-struct GridSpec {
-  std::array<double, 3> lower{}, spacing{};
-  std::array<int, 3> cells{1, 1, 1};
-};
-
 /// Prescribed (zero) velocity components at a face of the grid, bit i for component i; open faces have none.
 struct FaceSpec {
-  std::array<std::array<unsigned char, 2>, 3> fixed{};  ///< [axis][0: lower face, 1: upper face]
+  std::array<std::array<unsigned char, 2>, 3> fixed{};  ///< [logical axis][0: lower face, 1: upper]
 };
 
 struct LinearElasticSpec {

@@ -263,6 +263,20 @@ std::vector<double> TableReader::numbers(const std::string& key, size_t count, c
   return values;
 }
 
+std::vector<double> TableReader::increasing_numbers(const std::string& key, const std::string& unit) {
+  const char* what = "an array of at least two numbers, each greater than the one before";
+  const auto* node = table_->get(key);
+  if (!node) missing(key, what);
+  const auto* array = node->as_array();
+  if (!array || array->size() < 2) fail(*node, key, std::string("must be ") + what);
+  auto values = numbers(key, array->size(), Range::any(), {}, unit);
+  for (size_t i = 1; i < values.size(); ++i)
+    if (!(values[i] > values[i - 1]))
+      fail(*array->get(i), fmt::format("{}[{}]", key, i),
+           fmt::format("must be > {}", number_text(values[i - 1])));
+  return values;
+}
+
 std::vector<double> TableReader::number_or_numbers(const std::string& key, size_t count, const Range& range,
                                                    std::optional<double> fallback, const std::string& unit) {
   const auto* node = table_->get(key);

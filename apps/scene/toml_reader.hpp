@@ -83,6 +83,8 @@ class TableReader {
                      std::optional<std::string> fallback = {});
   std::vector<double> numbers(const std::string& key, size_t count, const Range& range,
                               std::optional<std::vector<double>> fallback = {}, const std::string& unit = "");
+  /// At least two numbers, each greater than the one before.
+  std::vector<double> increasing_numbers(const std::string& key, const std::string& unit = "");
   /// One number for all `count` entries, or an array of `count` numbers.
   std::vector<double> number_or_numbers(const std::string& key, size_t count, const Range& range,
                                         std::optional<double> fallback = {}, const std::string& unit = "");

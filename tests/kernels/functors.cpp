@@ -291,7 +291,8 @@ TEST_CASE("MarkOccupied, FindExterior, FindBoundary and MarkNodes in a row of fi
   particles.position(1, 0) = 3.5;
   const auto bits = allocate_cell_bits<Host>(grid);
   const BitRows<1> tiling(grid);
-  for (int p = 0; p < 2; ++p) kernel::MarkOccupied<1, double, Host>{particles, grid, bits.occupied}(p);
+  using Mark = kernel::MarkOccupied<UniformGrid<1, double>, 1, double, Host>;
+  for (int p = 0; p < 2; ++p) Mark{particles, grid, bits.occupied}(p);
   CHECK(bits.occupied(0, 0) == 0b01100);
   kernel::FindExterior<1, Host>{bits, tiling}(0);
   CHECK(bits.exterior(0, 0) == 0b10010);

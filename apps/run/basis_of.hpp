@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// The basis functions of a scene's grid, with the memory they need, on the backend of this build.
+#pragma once
+
+#include <vsb/kernels/make_mapped_mesh.hpp>
+#include <vsb/physics/linear_basis.hpp>
+#include <vsb/physics/mapped_basis.hpp>
+#include "scene/grid_spec.hpp"
+
+namespace vsb::app {
+
+#if defined(VSB_BACKEND_CUDA)
+using ExecutionSpace = Kokkos::Cuda;
+#elif defined(VSB_BACKEND_OPENMP)
+using ExecutionSpace = Kokkos::OpenMP;
+#else
+using ExecutionSpace = Kokkos::Serial;
+#endif
+
+/// A basis together with what it points to.
+template <class Basis>
+struct OwnedBasis;
+
+template <int Dim, class Real>
+struct OwnedBasis<LinearBasis<Dim, Real>> {
+  LinearBasis<Dim, Real> basis;
+
+  explicit OwnedBasis(const GridSpec& spec) {
+    Vector<Dim, Real> lower, spacing;
+    Vector<Dim, int> cells;
+    for (int i = 0; i < Dim; ++i) {
+      const auto axis = static_cast<size_t>(i);
+      lower[i] = static_cast<Real>(spec.lower[axis]);
+      spacing[i] = static_cast<Real>(spec.spacing[axis]);
+      cells[i] = spec.cells[axis];
+    }
+    basis.grid = {lower, spacing, cells};
+  }
+  size_t bytes() const { return 0; }
+};
+
+template <int Dim, class Real>
+struct OwnedBasis<MappedLinearBasis<Dim, Real>> {
+  MappedMesh<Dim, Real, ExecutionSpace::device_type> mesh;
+  MappedLinearBasis<Dim, Real> basis;
+
+  explicit OwnedBasis(const GridSpec& spec) : mesh(make_mesh(spec)), basis{mesh.grid} {}
+  size_t bytes() const {
+    return mesh.nodes.position.span() * sizeof(Real) + mesh.nodes.start_cell.span() * sizeof(int);
+  }
+
+ private:
+  static auto make_mesh(const GridSpec& spec) {
+    Vector<Dim, int> cells;
+    for (int i = 0; i < Dim; ++i) cells[i] = spec.cells[static_cast<size_t>(i)];
+    return make_mapped_mesh<Real, ExecutionSpace::device_type>(cells, [&](const Vector<Dim, int>& ijk) {
+      std::array<int, 3> logical{};
+      for (int i = 0; i < Dim; ++i) logical[static_cast<size_t>(i)] = ijk[i];
+      const Point place = node_position(spec, Dim, logical);
+      Vector<Dim, double> x;
+      for (int i = 0; i < Dim; ++i) x[i] = place[static_cast<size_t>(i)];
+      return x;
+    });
+  }
+};
+
+}  // namespace vsb::app

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene/read_grid.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vsb::app {
+
+namespace {
+
+const std::vector<std::string> axis_names = {"x", "y", "z"};
+
+/// So that the raster, with eight cells per cell of a grid in space, can be numbered.
+constexpr double most_mapped_nodes = 1e8;
+
+GridSpec read_uniform(TableReader& r, int dimension) {
+  const auto d = static_cast<size_t>(dimension);
+  GridSpec grid;
+  const auto lower = r.numbers("lower", d, Range::any(), {}, "m, corner of the grid");
+  const auto upper = r.numbers("upper", d, Range::any(), {}, "m, opposite corner");
+  const auto spacing = r.number_or_numbers("spacing", d, Range::positive(), {}, "m, cell size");
+  double nodes = 1;
+  for (size_t i = 0; i < d; ++i) {
+    const double cells = (upper[i] - lower[i]) / spacing[i];
+    const double rounded = std::round(cells);
+    if (!(rounded >= 1) || std::abs(cells - rounded) > 1e-6 * rounded)
+      r.fail(*r.source().get("upper"), "upper",
+             fmt::format(
+                 "must lie a whole number of cells (>= 1) above 'lower'; in {} there are {} cells of {} m",
+                 axis_names[i], cells, spacing[i]));
+    nodes *= rounded + 1;
+    if (nodes > 1e9)
+      r.fail(*r.source().get("spacing"), "spacing",
+             fmt::format("the grid must have <= 1e9 nodes, not {:.3g}", nodes));
+    grid.lower[i] = lower[i];
+    grid.spacing[i] = spacing[i];
+    grid.cells[i] = static_cast<int>(rounded);
+  }
+  return grid;
+}
+
+void set_axis(GridSpec& grid, size_t axis, std::vector<double> nodes) {
+  grid.cells[axis] = static_cast<int>(nodes.size()) - 1;
+  grid.coordinates[axis] = std::move(nodes);
+}
+
+void limit_nodes(const TableReader& r, const toml::node& at, const std::string& key, const GridSpec& grid) {
+  double nodes = 1;
+  for (const auto& axis : grid.coordinates) nodes *= std::max(1.0, static_cast<double>(axis.size()));
+  if (nodes > most_mapped_nodes)
+    r.fail(at, key, fmt::format("the grid must have <= {:g} nodes, not {:.3g}", most_mapped_nodes, nodes));
+}
+
+GridSpec read_rectilinear(TableReader& r, int dimension) {
+  GridSpec grid;
+  for (size_t i = 0; i < static_cast<size_t>(dimension); ++i) {
+    set_axis(grid, i, r.increasing_numbers(axis_names[i], "m, nodes"));
+    grid.lower[i] = grid.coordinates[i].front();
+  }
+  limit_nodes(r, *r.source().get("x"), "x", grid);
+  return grid;
+}
+
+/// count + 1 numbers from low to high, both of them exact.
+std::vector<double> equal_intervals(double low, double high, int count) {
+  std::vector<double> nodes;
+  for (int i = 0; i <= count; ++i) nodes.push_back(low + (high - low) * i / count);
+  nodes.back() = high;
+  return nodes;
+}
+
+GridSpec read_polar(TableReader& document, int dimension) {
+  if (dimension == 1)
+    document.fail(*document.source().get("polar"), "polar", "a polar grid is for dimension 2 or 3");
+  TableReader r = document.table("polar");
+  GridSpec grid;
+  grid.polar = true;
+  const auto center = r.numbers("center", 2, Range::any(), std::vector<double>{0, 0}, "m");
+  std::copy(center.begin(), center.end(), grid.center.begin());
+  const int most = 1'000'000;
+  const auto radii = r.numbers("radii", 2, Range::positive(), {}, "m");
+  if (!(radii[1] > radii[0])) r.fail(*r.source().get("radii"), "radii", "must increase");
+  const auto radial = static_cast<int>(r.integer("radial_cells", 1, most));
+  const auto angles = r.numbers("angles", 2, Range::between(-360, 360), {}, "degrees from x towards y");
+  const double span = angles[1] - angles[0];
+  if (!(span > 0 && span < 360))
+    r.fail(*r.source().get("angles"), "angles",
+           "must increase, by less than 360 degrees: the faces theta_min and theta_max are not joined");
+  const auto angular = static_cast<int>(r.integer("angular_cells", 1, most));
+  if (span / angular > 90)
+    r.fail(*r.source().get("angular_cells"), "angular_cells",
+           fmt::format("a cell must span <= 90 degrees, not {:g}", span / angular));
+  const double degree = std::acos(-1.0) / 180;
+  set_axis(grid, 0, equal_intervals(radii[0], radii[1], radial));
+  auto theta = equal_intervals(angles[0], angles[1], angular);
+  for (auto& angle : theta) angle *= degree;
+  set_axis(grid, 1, std::move(theta));
+  if (dimension == 3) set_axis(grid, 2, r.increasing_numbers("z", "m, nodes"));
+  limit_nodes(r, *r.source().get("radial_cells"), "radial_cells", grid);
+  r.finish();
+  return grid;
+}
+
+/// The components that are fixed at a face.
+unsigned char read_face(TableReader& r, const std::string& key, size_t axis, int dimension, bool polar) {
+  const toml::node* written = r.source().get(key);
+  if (written && written->is_array()) {
+    const std::vector<std::string> allowed(axis_names.begin(), axis_names.begin() + dimension);
+    if (written->as_array()->empty()) r.fail(*written, key, "must name a component; an open face is 'open'");
+    int mask = 0;
+    for (const auto& component : r.texts(key, allowed)) mask |= 1 << (component[0] - 'x');
+    return static_cast<unsigned char>(mask);
+  }
+  // Components are along x, y and z; the normal of a face of constant r or theta is not.
+  const bool no_roller = polar && axis < 2;
+  if (no_roller && written && written->value<std::string>() == "roller")
+    r.fail(*written, key,
+           "must be 'open', 'fixed' or a list of fixed components such as [\"y\"]: a roller "
+           "needs a face across x, y or z");
+  const auto kinds = no_roller ? std::vector<std::string>{"open", "fixed"}
+                               : std::vector<std::string>{"open", "roller", "fixed"};
+  const std::string kind = r.choice(key, kinds, "open");
+  if (kind == "roller") return static_cast<unsigned char>(1 << axis);
+  return static_cast<unsigned char>(kind == "fixed" ? (1 << dimension) - 1 : 0);
+}
+
+}  // namespace
+
+GridSpec read_grid(TableReader r, int dimension) {
+  const bool rectilinear = r.has("x") || r.has("y") || r.has("z"), polar = r.has("polar");
+  const bool uniform = r.has("lower") || r.has("upper") || r.has("spacing");
+  if (int(rectilinear) + int(polar) + int(uniform) > 1) {
+    const auto first = r.source().begin();
+    r.fail(first->second, std::string(first->first.str()),
+           "a grid has either lower, upper and spacing, or node coordinates x (y, z), or polar");
+  }
+  GridSpec grid = polar         ? read_polar(r, dimension)
+                  : rectilinear ? read_rectilinear(r, dimension)
+                                : read_uniform(r, dimension);
+  r.finish();
+  return grid;
+}
+
+FaceSpec read_faces(TableReader r, int dimension, const GridSpec& grid) {
+  FaceSpec faces;
+  for (size_t axis = 0; axis < static_cast<size_t>(dimension); ++axis)
+    for (size_t side = 0; side < 2; ++side)
+      faces.fixed[axis][side] =
+          read_face(r, grid.axis_name(axis) + (side == 0 ? "_min" : "_max"), axis, dimension, grid.polar);
+  r.finish();
+  return faces;
+}
+
+}  // namespace vsb::app

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// What bases whose support is the corners of one cell have in common: their bins. A bin collects the
+/// particles that share their support nodes; here it is a cell, and it carries the number of the cell's
+/// lowest node.
+#pragma once
+
+#include <vsb/physics/cell_numbering.hpp>
+
+namespace vsb {
+
+template <class Grid>
+struct CellBasis {
+  static constexpr int dimension = Grid::dimension;
+  static constexpr int support = Grid::corners;
+  using real = typename Grid::real;
+  using Position = Vector<dimension, real>;
+
+  Grid grid;
+
+  KOKKOS_FUNCTION bool contains(const Position& x) const { return grid.contains(x); }
+
+  KOKKOS_FUNCTION int node_count() const { return grid.node_count(); }
+
+  /// Number of bins; some of them may never hold a particle.
+  KOKKOS_FUNCTION int bin_count() const { return grid.node_count(); }
+
+  /// The bin of a point of the grid.
+  KOKKOS_FUNCTION int bin(const Position& x) const { return grid.node_index(grid.cell_containing(x)); }
+
+  /// Support node a of a bin's particles.
+  KOKKOS_FUNCTION int node_of_bin(int bin_index, int a) const { return bin_index + grid.corner_offset(a); }
+
+  /// The bin whose support node a is `node`, or -1 where there is none.
+  KOKKOS_FUNCTION int bin_of_node(int node, int a) const {
+    const auto ijk = grid.node_coordinates(node);
+    for (int i = 0; i < dimension; ++i) {
+      const int cell = ijk[i] - (a >> i & 1);
+      if (cell < 0 || cell >= grid.cells[i]) return -1;
+    }
+    return node - grid.corner_offset(a);
+  }
+};
+
+}  // namespace vsb

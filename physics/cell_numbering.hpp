@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// How the nodes and cells of a logically regular grid are numbered: along x first, wherever the nodes are.
+#pragma once
+
+#include <vsb/views/tensor.hpp>
+
+namespace vsb {
+
+/// A place in a cell, and the volume there per volume of local coordinates.
+template <int Dim, class Real>
+struct CellPoint {
+  Vector<Dim, Real> x;  ///< m
+  Real volume_ratio;    ///< det(dx / dxi), m^Dim
+};
+
+template <int Dim>
+struct CellNumbering {
+  static_assert(Dim >= 1 && Dim <= 3, "CellNumbering: dimension 1, 2 or 3");
+  static constexpr int dimension = Dim;
+  static constexpr int corners = 1 << Dim;  ///< nodes of a cell
+
+  Vector<Dim, int> cells;  ///< cells in each direction
+
+  KOKKOS_FUNCTION int node_count() const {
+    int n = 1;
+    for (int i = 0; i < Dim; ++i) n *= cells[i] + 1;
+    return n;
+  }
+  KOKKOS_FUNCTION int cell_count() const {
+    int n = 1;
+    for (int i = 0; i < Dim; ++i) n *= cells[i];
+    return n;
+  }
+
+  /// Distance in node numbers between neighbours in direction `axis`.
+  KOKKOS_FUNCTION int node_stride(int axis) const {
+    int stride = 1;
+    for (int i = 0; i < axis; ++i) stride *= cells[i] + 1;
+    return stride;
+  }
+  KOKKOS_FUNCTION int node_index(const Vector<Dim, int>& ijk) const {
+    int index = 0;
+    for (int i = Dim - 1; i >= 0; --i) index = index * (cells[i] + 1) + ijk[i];
+    return index;
+  }
+  KOKKOS_FUNCTION Vector<Dim, int> node_coordinates(int node) const {
+    Vector<Dim, int> ijk;
+    for (int i = 0; i < Dim; ++i) {
+      ijk[i] = node % (cells[i] + 1);
+      node /= cells[i] + 1;
+    }
+    return ijk;
+  }
+  /// What corner a of a cell has to add to the number of the cell's lowest node. Bit i of a says on which
+  /// side of the cell the corner is in direction i.
+  KOKKOS_FUNCTION int corner_offset(int a) const {
+    int offset = 0;
+    for (int i = 0; i < Dim; ++i)
+      if (a >> i & 1) offset += node_stride(i);
+    return offset;
+  }
+
+  KOKKOS_FUNCTION int cell_index(const Vector<Dim, int>& ijk) const {
+    int index = 0;
+    for (int i = Dim - 1; i >= 0; --i) index = index * cells[i] + ijk[i];
+    return index;
+  }
+  KOKKOS_FUNCTION Vector<Dim, int> cell_coordinates(int cell) const {
+    Vector<Dim, int> ijk;
+    for (int i = 0; i < Dim; ++i) {
+      ijk[i] = cell % cells[i];
+      cell /= cells[i];
+    }
+    return ijk;
+  }
+};
+
+}  // namespace vsb

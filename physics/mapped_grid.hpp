@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// A logically regular grid of multilinear cells with its nodes at any place, such as a graded or a polar
+/// one.
+///
+/// The cell that contains a point is found by a walk: a uniform raster over the grid's bounding box names a
+/// cell nearby; as long as the point lies beyond a face of the cell, the walk goes to the neighbour there.
+/// The answer depends on nothing but the point, so that all kernels of a step agree about it.
+#pragma once
+
+#include <vsb/physics/multilinear.hpp>
+#include <vsb/physics/uniform_grid.hpp>
+
+namespace vsb {
+
+/// A value that kernels copy; the memory it points to belongs to a MappedMesh (kernels/make_mapped_mesh.hpp).
+template <int Dim, class Real>
+struct MappedGrid : CellNumbering<Dim> {
+  using CellNumbering<Dim>::cells;
+  using real = Real;
+
+  const Real* position;           ///< [node][Dim], m
+  const int* start_cell;          ///< [raster cell]: where a walk to a point of it starts
+  UniformGrid<Dim, Real> raster;  ///< covers the bounding box
+  Real tolerance;                 ///< how far outside [0, 1] round-off may take local coordinates
+
+  KOKKOS_FUNCTION Vector<Dim, Real> node_position(int node) const {
+    Vector<Dim, Real> x;
+    for (int i = 0; i < Dim; ++i) x[i] = position[node * Dim + i];
+    return x;
+  }
+  KOKKOS_FUNCTION MultilinearCell<Dim, Real> cell(const Vector<Dim, int>& ijk) const {
+    const int lowest = this->node_index(ijk);
+    MultilinearCell<Dim, Real> c;
+    for (int a = 0; a < this->corners; ++a) c.corner[a] = node_position(lowest + this->corner_offset(a));
+    return c;
+  }
+  /// The place with local coordinates xi in [0, 1]^Dim of a cell.
+  KOKKOS_FUNCTION CellPoint<Dim, Real> map(const Vector<Dim, int>& ijk, const Vector<Dim, Real>& xi) const {
+    const auto at = cell(ijk).at(xi);
+    return {at.x, determinant(at.J)};
+  }
+  KOKKOS_FUNCTION Real cell_volume(const Vector<Dim, int>& ijk) const { return cell(ijk).volume(); }
+
+  /// A cell and the local coordinates in it.
+  struct Place {
+    Vector<Dim, int> cell;
+    Vector<Dim, Real> xi;
+    bool found;
+  };
+
+  /// Where x lies; not found outside the grid and at NaN. A point on a face belongs to one of its cells, and
+  /// round-off outside the grid counts as inside.
+  KOKKOS_FUNCTION Place locate(const Vector<Dim, Real>& x) const {
+    if (!raster.contains(x)) return {Vector<Dim, int>::zero(), Vector<Dim, Real>::zero(), false};
+    const Place place = walk(x);
+    return place.found ? place : search(x);
+  }
+
+  KOKKOS_FUNCTION bool contains(const Vector<Dim, Real>& x) const { return locate(x).found; }
+
+  /// The cell of a point of the grid.
+  KOKKOS_FUNCTION Vector<Dim, int> cell_containing(const Vector<Dim, Real>& x) const {
+    return locate(x).cell;
+  }
+
+  /// From the raster's cell to the one that contains x. Not found where the walk is stopped by a face of the
+  /// grid, or goes in circles: cells far from rectangles may do that.
+  KOKKOS_FUNCTION Place walk(const Vector<Dim, Real>& x) const {
+    Place place{this->cell_coordinates(start_cell[raster.cell_index(raster.cell_containing(x))]),
+                Vector<Dim, Real>::zero(), false};
+    int most_hops = 0;
+    for (int i = 0; i < Dim; ++i) most_hops += 2 * cells[i];
+    for (int hop = 0; hop <= most_hops; ++hop) {
+      if (inside(x, place)) return place;
+      int axis = -1;
+      Real beyond = tolerance;
+      for (int i = 0; i < Dim; ++i) {
+        const Real b = math::max(-place.xi[i], place.xi[i] - Real(1));
+        const bool last = place.xi[i] < Real(0) ? place.cell[i] == 0 : place.cell[i] == cells[i] - 1;
+        if (b > beyond && !last) {
+          axis = i;
+          beyond = b;
+        }
+      }
+      if (axis < 0) break;
+      place.cell[axis] += place.xi[axis] < Real(0) ? -1 : 1;
+    }
+    place.found = false;
+    return place;
+  }
+
+  /// The first of all cells that contains x: for the few points that a walk does not find.
+  KOKKOS_FUNCTION Place search(const Vector<Dim, Real>& x) const {
+    Place place{Vector<Dim, int>::zero(), Vector<Dim, Real>::zero(), false};
+    for (int n = 0; n < this->cell_count(); ++n) {
+      place.cell = this->cell_coordinates(n);
+      if (near(x, place.cell) && inside(x, place)) return place;
+    }
+    place.cell = Vector<Dim, int>::zero();
+    return place;
+  }
+
+  /// Sets the local coordinates of x in place.cell (where x is outside, they tell in which direction) and
+  /// whether it is inside.
+  KOKKOS_FUNCTION bool inside(const Vector<Dim, Real>& x, Place& place) const {
+    const auto inverse = cell(place.cell).inverse(x);
+    place.xi = inverse.xi;
+    place.found = inverse.converged;
+    for (int i = 0; i < Dim; ++i)
+      if (!(place.xi[i] >= -tolerance && place.xi[i] <= Real(1) + tolerance)) place.found = false;
+    return place.found;
+  }
+
+ private:
+  /// Whether x lies within a cell's bounding box, widened on all sides.
+  KOKKOS_FUNCTION bool near(const Vector<Dim, Real>& x, const Vector<Dim, int>& ijk) const {
+    const auto c = cell(ijk);
+    for (int i = 0; i < Dim; ++i) {
+      Real low = c.corner[0][i], high = low;
+      for (int a = 1; a < this->corners; ++a) {
+        low = math::min(low, c.corner[a][i]);
+        high = math::max(high, c.corner[a][i]);
+      }
+      const Real margin = Real(0.01) * (high - low);
+      if (!(x[i] >= low - margin && x[i] <= high + margin)) return false;
+    }
+    return true;
+  }
+};
+
+}  // namespace vsb

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// The memory of a mapped grid: where its nodes are, and where to start looking for the cell of a point.
+#pragma once
+
+#include <vsb/views/kokkos_compat.hpp>
+
+namespace vsb {
+
+template <class Real, class Device>
+struct MappedNodes {
+  Kokkos::View<Real**, Kokkos::LayoutRight, Device> position;  ///< [node][Dim], m
+  Kokkos::View<int*, Device> start_cell;                       ///< [raster cell], see physics/mapped_grid.hpp
+};
+
+}  // namespace vsb
