@@ -178,6 +178,9 @@ void check_scene(const Scene& scene) {
   fmt::print("# dt = {:.6g} s (kappa {:.4g}), {} {} steps, loads {}\n", scene.time.dt, scene.time.kappa,
              scene.time.until_static ? "at most" : "exactly", scene.time.steps,
              std::isfinite(settled) ? fmt::format("constant from {:.6g} s on", settled) : "never constant");
+  const double loaded = std::isfinite(settled) ? settled : 0.0;
+  if (!scene.tractions.empty()) fmt::print("# initial state under the loads at {:.6g} s:\n", loaded);
+  print_resultant(scene, simulation->balance_under_loads_at(loaded), "#   ");
   // The rate is measured: a few steps of the scene itself, the first one (which sorts) left out.
   simulation->advance(1);
   const auto begin = Clock::now();

@@ -72,7 +72,9 @@ class Simulation {
   virtual void advance(long long steps) = 0;
   /// Throws Diverged when a field of a particle is not finite or a volume is not positive.
   virtual void check_health() const = 0;
+  /// The balance of the present state under the loads of the present or of a given time, s.
   virtual BalanceReport balance() = 0;
+  virtual BalanceReport balance_under_loads_at(double t) = 0;
   virtual Snapshot snapshot() = 0;
   virtual GridSnapshot grid_snapshot() const = 0;
   virtual SavedState save() const = 0;

@@ -84,8 +84,9 @@ class SimulationOf final : public Simulation {
                                bad.particle, faults[f]));
   }
 
-  BalanceReport balance() override {
-    loads_.set_time(scene_, time());
+  BalanceReport balance() override { return balance_under_loads_at(time()); }
+  BalanceReport balance_under_loads_at(double t) override {
+    loads_.set_time(scene_, t);
     locate();
     const auto b = with_field(
         [&](const auto& field) { return vsb::balance(exec_, state_, bodies_, basis_, field, options_); });
@@ -96,7 +97,7 @@ class SimulationOf final : public Simulation {
     for (size_t i = 0; i < 3; ++i) {
       report.net_torque[i] = b.net_torque[static_cast<int>(i)];
       for (size_t k = 0; k < scene_.tractions.size(); ++k) {
-        const double factor = scene_.tractions[k].time(time());
+        const double factor = scene_.tractions[k].time(t);
         report.exact_force[i] += factor * resultants_[k].force[i];
         report.exact_torque[i] += factor * resultants_[k].torque[i];
       }

@@ -44,7 +44,9 @@ std::vector<std::pair<std::string, double>> named_figures(const Scene& scene, co
                              {"force_ratio", f.balance.force_ratio},
                              {"energy_ratio", f.balance.energy_ratio}});
   for (size_t c = 0; c < static_cast<size_t>(scene.dimension); ++c)
-    named.emplace_back(std::string("net_force_") + "xyz"[c], f.balance.net_force[c]);
+    for (const auto& [name, force] :
+         {std::pair("net_force_", &f.balance.net_force), std::pair("exact_force_", &f.balance.exact_force)})
+      named.emplace_back(std::string(name) + "xyz"[c], (*force)[c]);
   return named;
 }
 
@@ -87,6 +89,15 @@ std::string summary_json(const Scene& scene, const RunFigures& f) {
   return out.str();
 }
 
+void print_resultant(const Scene& scene, const BalanceReport& balance, const std::string& prefix) {
+  if (scene.tractions.empty()) return;
+  fmt::print("{}resultant of the tractions {} N, on the exact surface {} N\n", prefix,
+             text(balance.net_force), text(balance.exact_force));
+  if (scene.dimension > 1)
+    fmt::print("{}their torque about the origin {} N m, on the exact surface {} N m\n", prefix,
+               text(balance.net_torque), text(balance.exact_torque));
+}
+
 void print_report(const Scene& scene, const RunFigures& f) {
   if (!f.errors.empty()) {
     std::string head = fmt::format("{:<12}{:>12}", "error", "this run");
@@ -107,12 +118,7 @@ void print_report(const Scene& scene, const RunFigures& f) {
              f.seconds, f.ns_per_particle_step(), static_cast<double>(peak_bytes()) / 1e6);
   const auto& b = f.balance;
   fmt::print("force ratio {:.2e}, energy ratio {:.2e}\n", b.force_ratio, b.energy_ratio);
-  if (scene.tractions.empty()) return;
-  fmt::print("resultant of the tractions {} N, on the exact surface {} N\n", text(b.net_force),
-             text(b.exact_force));
-  if (scene.dimension > 1)
-    fmt::print("their torque about the origin {} N m, on the exact surface {} N m\n", text(b.net_torque),
-               text(b.exact_torque));
+  print_resultant(scene, b, "");
 }
 
 }  // namespace vsb::app

@@ -34,6 +34,9 @@ std::vector<std::string> figure_names(const Scene& scene);
 std::string summary_json(const Scene& scene, const RunFigures& figures);
 
 /// The same for people: errors beside the published ones, then cost.
+/// Resultant and torque of the tractions beside the exact ones, in lines that begin with `prefix`.
+void print_resultant(const Scene& scene, const BalanceReport& balance, const std::string& prefix);
+
 void print_report(const Scene& scene, const RunFigures& figures);
 
 }  // namespace vsb::app

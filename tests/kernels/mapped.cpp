@@ -144,7 +144,7 @@ TEMPLATE_TEST_CASE_SIG("on a distorted grid mass and momentum pass to the nodes 
     Vector<Dim, double> gravity;
     for (int i = 0; i < Dim; ++i) gravity[i] = 0.3 - 1.1 * i;
     particles_to_grid(Exec(), state.particles, state.occupancy.bins, state.nodes, state.occupancy.boundary,
-                      state.sums_workspace, basis, NoVirtualStress{}, gravity, strategy);
+                      state.sums_workspace.particles, basis, NoVirtualStress{}, gravity, strategy);
     remap_velocity(Exec(), state.particles, state.occupancy.bins, state.nodes, state.remap_workspace, basis,
                    strategy);
     const auto sums = read(state.nodes.sums), remapped = read(state.nodes.remapped_velocity);
@@ -180,7 +180,7 @@ TEMPLATE_TEST_CASE_SIG("patch test on a distorted grid: a stress equal to the vi
     REQUIRE(update_occupancy(Exec(), state.particles, state.occupancy, basis) == -1);
     Kokkos::deep_copy(state.occupancy.boundary, 1u);
     particles_to_grid(Exec(), state.particles, state.occupancy.bins, state.nodes, state.occupancy.boundary,
-                      state.sums_workspace, basis, field, Vector<Dim, double>::zero(), Scatter::gathered);
+                      state.sums_workspace.particles, basis, field, Vector<Dim, double>::zero(), Scatter::gathered);
     return read(state.nodes.sums);
   };
   const auto balanced = sums_with(1), twice = sums_with(2);
