@@ -3,8 +3,9 @@
 /// How far a state is from equilibrium, and the resultant of its tractions.
 ///   unbalanced U = |f| over free components;   internal I = |f| without virtual stress, over all components;
 ///   force ratio U / I;   net force = sum_I g_I, net torque = sum_I x_I x g_I about the origin, with g_I =
-///   f_I with - f_I without tractions, over free components of nodes with mass: what acts on a prescribed one
-///   is the support's, and what a surface point in a void cell gives to a node without mass acts on nothing;
+///   f_I with - f_I without tractions, over free components: what acts on a prescribed one is the support's.
+///   The net force counts what surface points in void cells give to nodes without mass; the unbalanced force
+///   does not, since it acts on nothing;
 ///   kinetic energy sum_I |p_I|^2 / (2 m_I);   strain energy scale sum_p V |sigma|^2 / (2 M).
 /// The kinetic energy is the grid's: velocities of FLIP particles that cancel at every node move nothing, and
 /// no damping ever reaches them.
@@ -47,7 +48,7 @@ struct NodeBalance {
       if (!fixed && m > 0) sum[0] += f * f;
       sum[1] += g * g;
       if (!fixed && m > 0) sum[2] += 0.5 * p * p / m;
-      if (!fixed && m > 0) traction[i] = f - g;
+      if (!fixed) traction[i] = f - g;
       x[i] = place[i];
       sum[3 + i] += traction[i];
     }

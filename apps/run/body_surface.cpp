@@ -50,7 +50,9 @@ void add_piece(const Point& position, Point area, const Point& outwards, std::ve
 
 void add_triangle(const Point& a, const Point& b, const Point& c, const Point& outwards,
                   std::vector<SurfacePiece>& pieces) {
-  add_piece((1.0 / 3.0) * (a + b + c), 0.5 * cross(b - a, c - a), outwards, pieces);
+  // Three points for a third of the area each: exact for quadratic functions.
+  const Point middle = (1.0 / 3.0) * (a + b + c), area = (1.0 / 6.0) * cross(b - a, c - a);
+  for (const Point& corner : {a, b, c}) add_piece(0.5 * (middle + corner), area, outwards, pieces);
 }
 
 /// The pieces within one simplex of `inside` and `outside` corners (neither empty).

@@ -9,7 +9,8 @@
 
 namespace vsb::app {
 
-/// A piece of surface: its middle, and its area times the outward unit normal (m^2; m in 2D, 1 in 1D).
+/// A piece of surface: a point that stands for it, and its area times the outward unit normal (m^2; m in 2D,
+/// 1 in 1D).
 struct SurfacePiece {
   Point position{}, area{};
 };
@@ -25,7 +26,8 @@ struct SurfaceBox {
 
 /// The pieces of the boundary of a region: sampling intervals are cut into simplices, on whose edges the
 /// crossings of the boundary are found by bisection. Pieces of a closed surface close to round-off: their
-/// areas add up to zero. Edges and corners are cut off at the size of the interval.
+/// areas add up to zero. They integrate linear functions (quadratic ones in 3D) over flat faces exactly.
+/// Edges and corners are cut off at the size of the interval.
 std::vector<SurfacePiece> surface_pieces(const Region& region, const SurfaceBox& box);
 
 /// The box of a scene's grid with `per_cell` intervals per cell and direction.

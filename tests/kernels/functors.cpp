@@ -342,9 +342,9 @@ TEST_CASE("NodeBalance, StrainEnergy and SumChunk") {
   const kernel::NodeBalance<UniformGrid<2, double>, 2, double, Host> in_plane{square, plane, plane_bare};
   auto free = Vector<8, double>::zero(), held = free;
   in_plane(3, free);
-  for (int c = 0; c < 8; ++c)
-    if (c != 1) CHECK(free[c] == 0);  // without mass the force acts on nothing
+  CHECK(free[0] == 0);  // without mass the force acts on nothing
   plane.mass(3) = 1;
+  free = held;
   in_plane(3, free);
   CHECK(free[0] == 29);
   CHECK(free[3] == 2);
