@@ -36,4 +36,7 @@ std::string summary_json(const Scene& scene, const RunFigures& figures);
 /// The same for people: errors beside the published ones, then cost.
 void print_report(const Scene& scene, const RunFigures& figures);
 
+/// How far a ratio lies above 1, in percent for two decimals: what rounds to zero has no sign left.
+double percent_above(double ratio);
+
 }  // namespace vsb::app
