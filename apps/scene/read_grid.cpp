@@ -130,7 +130,10 @@ unsigned char read_face(TableReader& r, const std::string& key, size_t axis, int
 }  // namespace
 
 GridSpec read_grid(TableReader r, int dimension) {
-  r.allow_only({"lower", "upper", "spacing", "x", "y", "z", "polar"});
+  std::vector<std::string> keys = {"lower", "upper", "spacing"};
+  keys.insert(keys.end(), axis_names.begin(), axis_names.begin() + dimension);
+  keys.emplace_back("polar");
+  r.allow_only(keys);
   const bool rectilinear = r.has("x") || r.has("y") || r.has("z"), polar = r.has("polar");
   const bool uniform = r.has("lower") || r.has("upper") || r.has("spacing");
   if (int(rectilinear) + int(polar) + int(uniform) > 1) {

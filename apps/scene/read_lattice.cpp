@@ -92,7 +92,6 @@ void read_lattice(TableReader& body_table, const GridSpec& grid, int dimension, 
     if (body_table.has("particles_per_cell"))
       body_table.fail(*written, "lattice", "give either particles_per_cell or a lattice, not both");
     TableReader lattice = body_table.table("lattice");
-    lattice.allow_only({"uniform", "concentric"});
     if (lattice.has("uniform") == lattice.has("concentric"))
       body_table.fail(*written, "lattice", "must have one of uniform and concentric");
     if (lattice.has("concentric")) {

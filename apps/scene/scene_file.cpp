@@ -59,8 +59,8 @@ void apply_override(toml::table& document, const std::string& argument) {
     if (const auto* key = std::get_if<std::string>(&parts[i])) {
       auto* table = node->as_table();
       if (const auto* array = node->as_array(); array && !array->empty() && array->get(0)->is_table()) {
-        throw SceneError(fmt::format("{}: '{}' is an array of tables; say which one: {}[0].{}", source,
-                                     so_far, so_far, *key));
+        throw SceneError(fmt::format("{}: '{}' is an array of tables; say which one: {}[0]{}", source, so_far,
+                                     so_far, argument.substr(so_far.size(), equals - so_far.size())));
       }
       if (!table) throw SceneError(fmt::format("{}: '{}' is not inside a table", source, *key));
       if (last) {

@@ -144,6 +144,34 @@ class Ends(ProgramTest):
         self.assertEqual(done.returncode, 4)
         self.assertIn("column.checkpoint", done.stderr)
 
+    def test_a_checkpoint_is_not_discarded_without_a_word(self):
+        out = self.folder / "column"
+        again = lambda *more: vsb("run", SCENES / "column.toml", "--out", out, "--set", "time.steps=400000", *more)
+        first = vsb("run", SCENES / "column.toml", "--out", out, "--set", "time.steps=10", "--resume")
+        self.assertEqual((first.returncode, first.stderr), (0, f"vsb: no checkpoint in {out}; starting from step 0\n"))
+        self.assertEqual(self.interrupt(out, signal.SIGINT), 5)
+        with h5py.File(out / "column.checkpoint") as file:
+            step = int(file["checkpoint"].attrs["step"][0])
+        done = again("--quiet")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn(f"discarding the checkpoint of step {step} in {out} (with --resume", done.stderr)
+        self.assertFalse((out / "column.checkpoint").exists())
+        self.assertEqual(again("--quiet").stderr, "")  # a run that came to its end leaves none
+
+    def test_not_static_has_its_own_exit_code(self):
+        run = lambda *more: vsb("run", SCENES / "cylinder.toml", "--out", self.folder / "c", "--quiet", *more)
+        done = run("--set", "time.until_static.max_steps=100")
+        self.assertEqual(done.returncode, 7)
+        self.assertRegex(done.stderr, r"^vsb: not static after max_steps = 100 \(force ratio [\d.e+-]+, energy ratio [\d.e+-]+\)\n$")
+        self.assertFalse(json.loads((self.folder / "c" / "summary.json").read_text())["static"])
+        self.assertIn("7 not static", vsb("--help").stdout)
+
+    def test_divergence_by_a_modulus_in_the_wrong_unit_says_so(self):
+        done = vsb("run", SCENES / "cylinder.toml", "--out", self.folder / "c", "--quiet", "--set",
+                   "body[0].material.youngs_modulus=10", "--set", "traction[0].time.ramp=0")
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertRegex(done.stderr, r"diverged at step .*; largest load / smallest Young's modulus = 1e\+05 Pa / 10 Pa = 1e\+04: check")
+
     def test_divergence_names_step_particle_and_field(self):
         done = vsb("run", SCENES / "column.toml", "--out", self.folder / "column", "--set", "time.dt=0.06")
         self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
