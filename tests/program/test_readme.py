@@ -43,6 +43,16 @@ class Readme(ProgramTest):
             self.assertAlmostEqual(summary["exact_force"][component], 30e3, delta=1)
             self.assertAlmostEqual(summary["net_force"][component], told[component], delta=50)
 
+    def test_examples_of_the_help_run_as_printed(self):
+        (self.folder / "apps").symlink_to(ROOT / "apps")
+        (self.folder / "vsb").symlink_to(PROGRAM)
+        text = subprocess.run([PROGRAM, "--help"], capture_output=True, text=True).stdout
+        commands = re.findall(r"^  ((?:vsb|/usr/bin/python3) .*?)   ", text, re.MULTILINE)
+        self.assertEqual(len(commands), 3)
+        for command in commands:
+            done = subprocess.run(f"PATH=.:$PATH {command}", shell=True, cwd=self.folder, capture_output=True, text=True, timeout=600)
+            self.assertEqual(done.returncode, 0, f"{command}\n{done.stdout}{done.stderr}")
+
     def test_demo_and_check_are_what_runs_elsewhere(self):
         for script in ("demo", "check", ".ci/run", "third_party/setup"):
             self.assertTrue((ROOT / script).stat().st_mode & 0o100, script)

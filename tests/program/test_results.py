@@ -97,6 +97,13 @@ class Frames(ProgramTest):
         self.assertAlmostEqual(summary["net_force"][0], -0.01, delta=1e-6)  # 100 of 10,000 ramp steps
         self.assertIn("steps = 100", summary["provenance"]["scene"])
 
+    def test_deviations_that_round_to_zero_have_no_sign(self):
+        run = lambda *more: vsb("run", SCENES / "column.toml", "--out", self.folder / "column", "--set", "time.steps=100", *more)
+        run()
+        e_u = json.loads((self.folder / "column" / "summary.json").read_text())["errors"]["e_u"]
+        for factor, text in ((1 + 1e-6, "(  +0.00 %)"), (1 - 1e-6, "(  +0.00 %)"), (1 + 1e-4, "(  -0.01 %)")):
+            self.assertIn(text, run("--set", f"published[0].e_u={e_u * factor!r}").stdout)
+
     def test_a_second_run_replaces_the_frames_of_the_first(self):
         self.run_scene("column", "--set", "time.steps=20", "--set", "output.every=5")
         self.run_scene("column", "--set", "time.steps=7")
@@ -112,7 +119,8 @@ class Ends(ProgramTest):
         run.stdout.readline()  # the head line: the run has begun
         time.sleep(0.5)
         run.send_signal(number)
-        run.communicate(timeout=60)
+        output, _ = run.communicate(timeout=60)
+        self.assertRegex(output, r"interrupted at step \d+; the same command with --resume")
         return run.returncode
 
     def test_interrupt_writes_a_checkpoint_and_resuming_changes_no_bit(self):
