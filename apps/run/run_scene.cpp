@@ -103,6 +103,7 @@ RunResult run(const Scene& scene, const RunOptions& options) {
         "it)\n",
         *step, options.directory);
   }
+  const InterruptGuard guard;  // from the first file on
   results.begin(resumed_step);
   const bool reports = !options.quiet && !options.progress_only;
   if (!options.progress_only) print_advice(scene);
@@ -114,7 +115,6 @@ RunResult run(const Scene& scene, const RunOptions& options) {
   }
   if (resumed_step < 0) write_frames(results, scene, *simulation);
 
-  const InterruptGuard guard;
   Progress progress(options.quiet, simulation->particle_count());
   StaticForecast forecast(scene.time.until_static.value_or(StaticCriterion{}));
   const long long first_step = simulation->step();
