@@ -102,7 +102,7 @@ def compared_quantities(frame):
                 (r"$\sigma_{xx}$", "Pa", stress[:, 0], exact[:, 0], "e_sigma")]
     mean = stress[:, :3].mean(axis=1)
     return [("mean stress", "Pa", mean, None, None), ("von Mises stress", "Pa", von_mises(stress), None, None),
-            ("displacement", "m", np.linalg.norm(u, axis=1), None, None)]
+            *[(rf"$u_{'xyz'[i]}$", "m", u[:, i], None, None) for i in range(frame.dimension)]]
 
 
 def particle_sizes(frame):
@@ -237,7 +237,7 @@ def main():
     for kind, draw in drawings.items():
         path = frame.directory / f"{frame.name}_{kind}.png"
         figure = draw(frame)
-        figure.savefig(path, dpi=arguments.dpi)
+        figure.savefig(path, dpi=arguments.dpi, bbox_inches="tight")
         plt.close(figure)
         print(path)
 

@@ -79,11 +79,13 @@ int main(int argc, char** argv) {
   CLI::App app{
       "vsb: material point method with tractions by the virtual stress boundary method.\n\n"
       "A scene is a TOML file; the ones to start from lie in apps/scenes. A typical session:\n"
-      "  vsb check column.toml                        what would run, and what it would cost\n"
-      "  vsb run column.toml --set time.steps=30000   run it, with another number of steps\n"
-      "  python3 apps/plot.py results/column          draw its pictures\n\n"
+      "  vsb check apps/scenes/column.toml                        what would run, and what it would cost\n"
+      "  vsb run apps/scenes/column.toml --set time.steps=30000   run it, with another number of steps\n"
+      "  /usr/bin/python3 apps/plot.py results/column             draw its pictures\n\n"
       "Exit codes: 0 done, 2 bad usage or input, 3 diverged, 4 files cannot be read or written,\n"
-      "5 interrupted, checkpoint written, 6 a study ran but missed an expectation."};
+      "5 interrupted, checkpoint written, 6 a study ran but missed an expectation, 7 not static after "
+      "max_steps\n"
+      "(of until_static)."};
   app.require_subcommand(1);
   app.failure_message(CLI::FailureMessage::help);
 

@@ -125,7 +125,7 @@ void fill_nodes(const Scene<Dim, Real>& scene) {
   const auto tractions = Kokkos::create_mirror_view(scene.state.occupancy.tractions);
   for (int node = 0; node < scene.basis.node_count(); ++node) {
     const auto I = static_cast<size_t>(node);
-    const int layer = scene.basis.grid.node_coordinates(node)[scene.axis];
+    const int layer = scene.basis.grid.node_ijk(node)[scene.axis];
     fixed(I) = layer == 0 ? ComponentMask((1 << Dim) - 1) : ComponentMask(0);
     tractions(I) = scene.load == Load::free_faces ||
                    (scene.load == Load::end_face && layer >= scene.size.cells_along - 1);

@@ -56,7 +56,7 @@ struct SubtractCellStress {
   KOKKOS_FUNCTION void operator()(int I) const {
     const TractionMask chi = boundary(I) & virtual_stress.original;
     if (chi == 0) return;
-    const auto at = basis.grid.node_coordinates(I);
+    const auto at = basis.grid.node_ijk(I);
     auto f = Vector<Dim, Real>::zero();
     for (int corner = 0; corner < (1 << Dim); ++corner) {
       Vector<Dim, int> cell;

@@ -28,7 +28,7 @@ namespace mapped {
 template <int Dim, class Real>
 void check_cells(const MappedGrid<Dim, Real>& grid) {
   for (int n = 0; n < grid.cell_count(); ++n) {
-    const auto ijk = grid.cell_coordinates(n);
+    const auto ijk = grid.cell_ijk(n);
     const auto cell = grid.cell(ijk);
     for (int a = 0; a < grid.corners; ++a) {
       Vector<Dim, Real> xi;
@@ -60,7 +60,7 @@ void fit_raster(MappedGrid<Dim, Real>& grid) {
   Real magnitude = 0, shortest = std::numeric_limits<Real>::max();
   for (int node = 0; node < grid.node_count(); ++node) {
     const auto x = grid.node_position(node);
-    const auto ijk = grid.node_coordinates(node);
+    const auto ijk = grid.node_ijk(node);
     for (int i = 0; i < Dim; ++i) {
       low[i] = std::min(low[i], x[i]);
       high[i] = std::max(high[i], x[i]);
@@ -104,7 +104,7 @@ std::vector<int> start_cells(const MappedGrid<Dim, Real>& grid) {
     return q;
   };
   for (int n = 0; n < grid.cell_count(); ++n) {
-    typename MappedGrid<Dim, Real>::Place place{grid.cell_coordinates(n), Vector<Dim, Real>::zero(), false};
+    typename MappedGrid<Dim, Real>::Place place{grid.cell_ijk(n), Vector<Dim, Real>::zero(), false};
     const auto cell = grid.cell(place.cell);
     Vector<Dim, int> first, last;
     for (int i = 0; i < Dim; ++i) {
@@ -133,12 +133,12 @@ std::vector<int> start_cells(const MappedGrid<Dim, Real>& grid) {
     }
   }
   for (int n = 0; n < grid.cell_count(); ++n) {  // cells smaller than the raster's
-    const auto cell = grid.cell(grid.cell_coordinates(n));
+    const auto cell = grid.cell(grid.cell_ijk(n));
     assign(raster.cell_index(raster.cell_containing(cell.at(centre(Vector<Dim, int>::zero())).x)), n);
   }
   for (size_t next = 0; next < known.size(); ++next) {
     const int cell = start[static_cast<size_t>(known[next])];
-    const auto ijk = raster.cell_coordinates(known[next]);
+    const auto ijk = raster.cell_ijk(known[next]);
     for (int i = 0; i < Dim; ++i)
       for (const int step : {-1, 1}) {
         auto neighbour = ijk;
@@ -161,7 +161,7 @@ MappedMesh<Dim, Real, Device> make_mapped_mesh(const Vector<Dim, int>& cells, co
     if (cells[i] < 1) throw std::invalid_argument("vsb::make_mapped_mesh: at least one cell per direction");
   std::vector<Real> places;
   for (int node = 0; node < grid.node_count(); ++node) {
-    const auto x = position(grid.node_coordinates(node));
+    const auto x = position(grid.node_ijk(node));
     for (int i = 0; i < Dim; ++i) places.push_back(static_cast<Real>(x[i]));
   }
   grid.position = places.data();

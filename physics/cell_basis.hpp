@@ -33,7 +33,7 @@ struct CellBasis {
 
   /// The bin whose support node a is `node`, or -1 where there is none.
   KOKKOS_FUNCTION int bin_of_node(int node, int a) const {
-    const auto ijk = grid.node_coordinates(node);
+    const auto ijk = grid.node_ijk(node);
     for (int i = 0; i < dimension; ++i) {
       const int cell = ijk[i] - (a >> i & 1);
       if (cell < 0 || cell >= grid.cells[i]) return -1;

@@ -44,7 +44,8 @@ struct CellNumbering {
     for (int i = Dim - 1; i >= 0; --i) index = index * (cells[i] + 1) + ijk[i];
     return index;
   }
-  KOKKOS_FUNCTION Vector<Dim, int> node_coordinates(int node) const {
+  /// The numbers (i, j, k) of a node along the axes, from 0: not where it is, which node_position tells.
+  KOKKOS_FUNCTION Vector<Dim, int> node_ijk(int node) const {
     Vector<Dim, int> ijk;
     for (int i = 0; i < Dim; ++i) {
       ijk[i] = node % (cells[i] + 1);
@@ -66,7 +67,7 @@ struct CellNumbering {
     for (int i = Dim - 1; i >= 0; --i) index = index * cells[i] + ijk[i];
     return index;
   }
-  KOKKOS_FUNCTION Vector<Dim, int> cell_coordinates(int cell) const {
+  KOKKOS_FUNCTION Vector<Dim, int> cell_ijk(int cell) const {
     Vector<Dim, int> ijk;
     for (int i = 0; i < Dim; ++i) {
       ijk[i] = cell % cells[i];

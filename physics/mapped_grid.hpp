@@ -24,6 +24,7 @@ struct MappedGrid : CellNumbering<Dim> {
   UniformGrid<Dim, Real> raster;  ///< covers the bounding box
   Real tolerance;                 ///< how far outside [0, 1] round-off may take local coordinates
 
+  /// Where a node is, m.
   KOKKOS_FUNCTION Vector<Dim, Real> node_position(int node) const {
     Vector<Dim, Real> x;
     for (int i = 0; i < Dim; ++i) x[i] = position[node * Dim + i];
@@ -67,7 +68,7 @@ struct MappedGrid : CellNumbering<Dim> {
   /// From the raster's cell to the one that contains x. Not found where the walk is stopped by a face of the
   /// grid, or goes in circles: cells far from rectangles may do that.
   KOKKOS_FUNCTION Place walk(const Vector<Dim, Real>& x) const {
-    Place place{this->cell_coordinates(start_cell[raster.cell_index(raster.cell_containing(x))]),
+    Place place{this->cell_ijk(start_cell[raster.cell_index(raster.cell_containing(x))]),
                 Vector<Dim, Real>::zero(), false};
     int most_hops = 0;
     for (int i = 0; i < Dim; ++i) most_hops += 2 * cells[i];
@@ -94,7 +95,7 @@ struct MappedGrid : CellNumbering<Dim> {
   KOKKOS_FUNCTION Place search(const Vector<Dim, Real>& x) const {
     Place place{Vector<Dim, int>::zero(), Vector<Dim, Real>::zero(), false};
     for (int n = 0; n < this->cell_count(); ++n) {
-      place.cell = this->cell_coordinates(n);
+      place.cell = this->cell_ijk(n);
       if (near(x, place.cell) && inside(x, place)) return place;
     }
     place.cell = Vector<Dim, int>::zero();

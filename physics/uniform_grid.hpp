@@ -34,8 +34,9 @@ struct UniformGrid : CellNumbering<Dim> {
   }
   KOKKOS_FUNCTION Real cell_volume(const Vector<Dim, int>&) const { return cell_volume(); }
 
+  /// Where a node is, m.
   KOKKOS_FUNCTION Vector<Dim, Real> node_position(int node) const {
-    const auto ijk = this->node_coordinates(node);
+    const auto ijk = this->node_ijk(node);
     Vector<Dim, Real> x;
     for (int i = 0; i < Dim; ++i) x[i] = lower[i] + static_cast<Real>(ijk[i]) * spacing[i];
     return x;

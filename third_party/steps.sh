@@ -21,20 +21,24 @@ as_text() {
   if [ "$1" -lt 60 ]; then printf '%d s' "$1"; else printf '%d min %02d s' $(($1 / 60)) $(($1 % 60)); fi
 }
 
-# step "what happens" COMMAND...: runs the command into the log, with a heartbeat on a terminal.
+# step "what happens" COMMAND...: runs the command into the log, with a heartbeat: every second on a terminal, a line a
+# minute elsewhere.
 step() {
-  local what=$1 begun=$SECONDS pid
+  local what=$1 begun=$SECONDS pid minutes=0
   shift
   printf '%s: %s ...\n' "$task" "$what" >>"$log"
   "$@" >>"$log" 2>&1 </dev/null &
   pid=$!
-  if [ -t 1 ]; then
-    while kill -0 "$pid" 2>/dev/null; do
+  while kill -0 "$pid" 2>/dev/null; do
+    if [ -t 1 ]; then
       printf '\r%s: %s ... %s ' "$task" "$what" "$(as_text $((SECONDS - begun)))"
-      sleep 1
-    done
-    printf '\r'
-  fi
+    elif [ $(((SECONDS - begun) / 60)) -gt "$minutes" ]; then
+      minutes=$(((SECONDS - begun) / 60))
+      printf '%s: %s ... %s\n' "$task" "$what" "$(as_text $((SECONDS - begun)))"
+    fi
+    sleep 1
+  done
+  if [ -t 1 ]; then printf '\r'; fi
   if wait "$pid"; then
     say "$task: $what: done in $(as_text $((SECONDS - begun)))"
   else

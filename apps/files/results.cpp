@@ -72,10 +72,11 @@ Results::Results(std::string directory, const Scene& scene)
 void Results::begin(long long resumed_step) {
   std::error_code error;
   fs::create_directories(directory_, error);
-  if (error) throw FileError(fmt::format("{}: {}", directory_, error.message()));
+  if (error)
+    throw FileError(fmt::format("{}: cannot create the directory ({})", directory_, error.message()));
   begin(particles_, resumed_step);
   begin(grid_, resumed_step);
-  if (resumed_step < 0) fs::remove(path(scene_.name + ".checkpoint"), error);
+  if (resumed_step < 0) remove_checkpoint();
   fs::remove(path("summary.json"), error);
 }
 
@@ -188,7 +189,7 @@ void Results::write_grid_frame(const GridSnapshot& grid, long long step, double 
 }
 
 void Results::write_checkpoint(const SavedState& saved) {
-  Hdf5Writer file(path(scene_.name + ".checkpoint"));
+  Hdf5Writer file(checkpoint_path());
   file.group("checkpoint");
   file.attribute("checkpoint", "version", std::vector<std::int64_t>{checkpoint_version});
   file.attribute("checkpoint", "step", std::vector<std::int64_t>{saved.step});
@@ -200,7 +201,7 @@ void Results::write_checkpoint(const SavedState& saved) {
 }
 
 std::optional<SavedState> Results::read_checkpoint() const {
-  const std::string name = path(scene_.name + ".checkpoint");
+  const std::string name = checkpoint_path();
   std::error_code error;
   if (!fs::exists(name, error)) return {};
   const Hdf5Reader file(name);
@@ -218,6 +219,22 @@ std::optional<SavedState> Results::read_checkpoint() const {
         "{}: written for another scene (or other --set values); remove it, or run without --resume", name));
   return SavedState{number("step"), static_cast<size_t>(number("bytes_per_number")),
                     file.bytes("checkpoint/particles")};
+}
+
+std::optional<long long> Results::checkpoint_step() const {
+  std::error_code error;
+  if (!fs::exists(checkpoint_path(), error)) return {};
+  try {
+    const auto steps = Hdf5Reader(checkpoint_path()).integers("checkpoint", "step");
+    if (steps.size() == 1) return steps[0];
+  } catch (const FileError&) {
+  }
+  return {};
+}
+
+void Results::remove_checkpoint() {
+  std::error_code error;
+  fs::remove(checkpoint_path(), error);
 }
 
 void Results::write_summary(const std::string& json) {

@@ -3,7 +3,7 @@
 /// What a run leaves behind: frames that ParaView opens, a checkpoint, and a summary.
 ///   NAME_000123.hdf, NAME.hdf.series   particles, VTKHDF 1.0 (vertex cells); the index gives the times
 ///   NAME_grid_000123.hdf, ...          nodal fields on the mesh of the grid's cells, on request
-///   NAME.checkpoint                    the last complete state
+///   NAME.checkpoint                    the last complete state of a run that is not at its end
 ///   summary.json
 #pragma once
 
@@ -33,6 +33,9 @@ class Results {
   /// The state to resume from; none where there is no checkpoint. Throws FileError for one that is damaged or
   /// was written by another scene.
   std::optional<SavedState> read_checkpoint() const;
+  /// The step of the checkpoint; none where there is none that can be read.
+  std::optional<long long> checkpoint_step() const;
+  void remove_checkpoint();
   void write_summary(const std::string& json);
 
   const std::string& directory() const { return directory_; }
@@ -43,6 +46,7 @@ class Results {
     std::vector<std::pair<std::string, double>> frames;  ///< file name, time
   };
   std::string path(const std::string& name) const { return directory_ + "/" + name; }
+  std::string checkpoint_path() const { return path(scene_.name + ".checkpoint"); }
   void begin(Series& series, long long resumed_step);
   void add_to_index(Series& series, const std::string& file, double time);
 

@@ -182,7 +182,7 @@ std::vector<LoadedPoint> conforming_points(const Scene& scene, const Grid& grid,
   std::vector<LoadedPoint> points;
   for (const auto& [node, by_tractions] : area)
     for (const auto& [tractions, sum] : by_tractions)
-      points.push_back({place(grid.node_coordinates(node)), sum, tractions, carried_by_none});
+      points.push_back({place(grid.node_ijk(node)), sum, tractions, carried_by_none});
   return points;
 }
 

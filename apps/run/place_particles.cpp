@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "run/cut_bodies.hpp"
 #include "run/lattice_points.hpp"
 #include "run/simulation.hpp"
 
@@ -19,6 +20,7 @@ bool in_grid(const Scene& scene, const Point& x) {
 }  // namespace
 
 PlacedParticles place_particles(const Scene& scene) {
+  refuse_cut_bodies(scene);
   PlacedParticles placed;
   for (size_t b = 0; b < scene.bodies.size(); ++b) {
     const auto& body = scene.bodies[b];

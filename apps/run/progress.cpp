@@ -24,11 +24,11 @@ bool Progress::due() const {
 }
 
 void Progress::report(long long step, long long made, double seconds, std::optional<long long> expected,
-                      double force_ratio) {
+                      double force_ratio, bool foreseen) {
   if (quiet_) return;
   last_ = Clock::now();
   std::string line = fmt::format("step {}", step);
-  if (expected) line += fmt::format(" of {}", *expected);
+  if (expected) line += fmt::format(" of {}{}", foreseen ? "about " : "", *expected);
   if (made > 0 && seconds > 0) {
     const double rate = static_cast<double>(made) / seconds;
     line += fmt::format(", {:.3g} particle-steps/s", rate * particles_);

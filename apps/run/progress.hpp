@@ -19,9 +19,9 @@ class Progress {
   /// Whether it is time for another report.
   bool due() const;
   /// `step` steps are done, of which `made` in `seconds` of this program's life; `expected` is the step at
-  /// which the run will end, where one can tell.
+  /// which the run will end, where one can tell; `foreseen` where that is a guess.
   void report(long long step, long long made, double seconds, std::optional<long long> expected,
-              double force_ratio);
+              double force_ratio, bool foreseen);
   /// Ends the line on a terminal.
   void finish();
 

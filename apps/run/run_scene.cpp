@@ -11,6 +11,7 @@
 #include "files/results.hpp"
 #include "run/interrupt.hpp"
 #include "run/progress.hpp"
+#include "run/scene_advice.hpp"
 #include "run/summary.hpp"
 
 namespace vsb::app {
@@ -80,9 +81,11 @@ void write_frames(Results& results, const Scene& scene, Simulation& simulation) 
   if (scene.output.grid) results.write_grid_frame(simulation.grid_snapshot(), snapshot.step, snapshot.time);
 }
 
-}  // namespace
+void print_advice(const Scene& scene) {
+  for (const auto& advice : scene_advice(scene)) fmt::print(stderr, "vsb: warning: {}\n", advice);
+}
 
-RunResult run_scene(const Scene& scene, const RunOptions& options) {
+RunResult run(const Scene& scene, const RunOptions& options) {
   const auto simulation = make_simulation(scene);
   Results results(options.directory, scene);
   long long resumed_step = -1;
@@ -90,10 +93,20 @@ RunResult run_scene(const Scene& scene, const RunOptions& options) {
     if (const auto saved = results.read_checkpoint()) {
       simulation->restore(*saved);
       resumed_step = saved->step;
+    } else if (!options.progress_only) {
+      fmt::print(stderr, "vsb: no checkpoint in {}; starting from step 0\n", options.directory);
     }
+  } else if (const auto step = results.checkpoint_step(); step && !options.progress_only) {
+    fmt::print(
+        stderr,
+        "vsb: discarding the checkpoint of step {} in {} (with --resume the run would have gone on from "
+        "it)\n",
+        *step, options.directory);
   }
+  const InterruptGuard guard;  // from the first file on
   results.begin(resumed_step);
   const bool reports = !options.quiet && !options.progress_only;
+  if (!options.progress_only) print_advice(scene);
   if (reports) {
     fmt::print("{}: {} particles, {} boundary nodes, dt {:.6g} s, {} {} steps, results in {}\n", scene.name,
                simulation->particle_count(), simulation->boundary_nodes(), scene.time.dt,
@@ -102,7 +115,6 @@ RunResult run_scene(const Scene& scene, const RunOptions& options) {
   }
   if (resumed_step < 0) write_frames(results, scene, *simulation);
 
-  const InterruptGuard guard;
   Progress progress(options.quiet, simulation->particle_count());
   StaticForecast forecast(scene.time.until_static.value_or(StaticCriterion{}));
   const long long first_step = simulation->step();
@@ -122,7 +134,10 @@ RunResult run_scene(const Scene& scene, const RunOptions& options) {
     if (interrupt_requested()) {
       progress.finish();
       results.write_checkpoint(simulation->save());
-      if (!options.progress_only) fmt::print("interrupted at step {}; continue with --resume\n", step);
+      if (!options.progress_only) {
+        fmt::print("interrupted at step {}; the same command with --resume (and the same --set) goes on\n",
+                   step);
+      }
       figures.steps = step;
       figures.steps_timed = step - first_step;
       return {exit_interrupted, figures};
@@ -143,12 +158,12 @@ RunResult run_scene(const Scene& scene, const RunOptions& options) {
     }
     if (progress.due())
       progress.report(step, step - first_step, figures.seconds, criterion ? forecast.end() : scene.time.steps,
-                      simulation->balance().force_ratio);
+                      simulation->balance().force_ratio, criterion.has_value());
   }
   simulation->check_health();
   const auto balance = simulation->balance();
   progress.report(simulation->step(), simulation->step() - first_step, figures.seconds, simulation->step(),
-                  balance.force_ratio);
+                  balance.force_ratio, false);
   progress.finish();
 
   if (scene.output.every == 0 || simulation->step() % scene.output.every != 0)
@@ -163,15 +178,30 @@ RunResult run_scene(const Scene& scene, const RunOptions& options) {
   figures.boundary_nodes = simulation->boundary_nodes();
   figures.state_bytes = simulation->state_bytes();
   results.write_summary(summary_json(scene, figures));
+  results.remove_checkpoint();
   if (reports) print_report(scene, figures);
-  if (scene.time.until_static && !found_static && !options.progress_only)
-    fmt::print("note: not static after max_steps = {} (force ratio {:.2e}, energy ratio {:.2e})\n",
+  if (!scene.time.until_static || found_static) return {exit_done, figures};
+  if (!options.progress_only)
+    fmt::print(stderr, "vsb: not static after max_steps = {} (force ratio {:.2e}, energy ratio {:.2e})\n",
                scene.time.steps, balance.force_ratio, balance.energy_ratio);
-  return {exit_done, figures};
+  return {exit_not_static, figures};
+}
+
+}  // namespace
+
+RunResult run_scene(const Scene& scene, const RunOptions& options) {
+  try {
+    return run(scene, options);
+  } catch (const Diverged& error) {
+    const auto hint = units_hint(scene);
+    if (hint.empty()) throw;
+    throw Diverged(fmt::format("{}; {}", error.what(), hint));
+  }
 }
 
 void check_scene(const Scene& scene) {
   const auto simulation = make_simulation(scene);
+  print_advice(scene);
   fmt::print("# {} particles, {} boundary nodes, {:.3g} MB of state\n", simulation->particle_count(),
              simulation->boundary_nodes(), static_cast<double>(simulation->state_bytes()) / 1e6);
   const double settled = loads_settled_at(scene);
@@ -190,8 +220,12 @@ void check_scene(const Scene& scene) {
     ++made;
   } while (seconds_since(begin) < 0.2);
   const double per_step = seconds_since(begin) / static_cast<double>(made);
-  fmt::print("# estimated time {:.3g} s ({:.3g} ns per particle and step)\n\n",
-             per_step * static_cast<double>(scene.time.steps), 1e9 * per_step / simulation->particle_count());
+  const double whole = per_step * static_cast<double>(scene.time.steps);
+  fmt::print("# estimated time {} ({:.3g} ns per particle and step)\n\n",
+             scene.time.until_static
+                 ? fmt::format("at most {:.3g} s, {:.3g} s per 1000 steps", whole, 1000 * per_step)
+                 : fmt::format("{:.3g} s", whole),
+             1e9 * per_step / simulation->particle_count());
   fmt::print("{}", scene.resolved);
 }
 

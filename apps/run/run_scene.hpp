@@ -17,7 +17,8 @@ enum ExitCode {
   exit_diverged = 3,
   exit_files = 4,
   exit_interrupted = 5,
-  exit_study_failed = 6  ///< a study was run, but not all of its expectations are met
+  exit_study_failed = 6,  ///< a study was run, but not all of its expectations are met
+  exit_not_static = 7     ///< a run until static came to its last step before it was
 };
 
 struct RunOptions {
@@ -28,7 +29,8 @@ struct RunOptions {
 };
 
 struct RunResult {
-  ExitCode code;       ///< exit_done, or exit_interrupted after SIGINT or SIGTERM with a checkpoint written
+  /// exit_done, exit_not_static, or exit_interrupted after SIGINT or SIGTERM with a checkpoint written
+  ExitCode code;
   RunFigures figures;  ///< of an interrupted run only the steps and their time
 };
 

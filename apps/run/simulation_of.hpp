@@ -249,7 +249,7 @@ class SimulationOf final : public Simulation {
   void fix_faces() {
     const auto mask = Kokkos::create_mirror_view(state_.nodes.fixed_components);
     for (int node = 0; node < basis_.node_count(); ++node) {
-      const auto ijk = basis_.grid.node_coordinates(node);
+      const auto ijk = basis_.grid.node_ijk(node);
       ComponentMask fixed = 0;
       for (int i = 0; i < Dim; ++i) {
         const auto& faces = scene_.faces.fixed[static_cast<size_t>(i)];
@@ -264,7 +264,7 @@ class SimulationOf final : public Simulation {
   void declare_tractions() {
     const auto mask = Kokkos::create_mirror_view(state_.occupancy.tractions);
     for (int node = 0; node < basis_.node_count(); ++node) {
-      const auto ijk = basis_.grid.node_coordinates(node);
+      const auto ijk = basis_.grid.node_ijk(node);
       std::array<int, 3> logical{};
       for (int i = 0; i < Dim; ++i) logical[static_cast<size_t>(i)] = ijk[i];
       mask(node) = tractions_at(scene_, loads_.on_nodes(), node_position(scene_.grid, Dim, logical));
@@ -339,7 +339,7 @@ class SimulationOf final : public Simulation {
     for (size_t p = 0; p < placed_.position.size(); ++p) {
       const auto shape = basis_.shape(to_vector(placed_.position[p]));
       for (int a = 0; a < Basis::support; ++a) {
-        const auto ijk = basis_.grid.node_coordinates(shape.node[a]);
+        const auto ijk = basis_.grid.node_ijk(shape.node[a]);
         if (declared(static_cast<size_t>(shape.node[a])) == 0) continue;
         for (int i = 0; i < Dim; ++i) {
           const auto& faces = scene_.faces.fixed[static_cast<size_t>(i)];

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <cmath>
 #include <sstream>
 
 #include "files/build_info.hpp"
@@ -98,6 +99,11 @@ void print_resultant(const Scene& scene, const BalanceReport& balance, const std
                text(balance.net_torque), text(balance.exact_torque));
 }
 
+double percent_above(double ratio) {
+  const double percent = 100 * (ratio - 1);
+  return std::abs(percent) < 0.005 ? 0 : percent;
+}
+
 void print_report(const Scene& scene, const RunFigures& f) {
   if (!f.errors.empty()) {
     std::string head = fmt::format("{:<12}{:>12}", "error", "this run");
@@ -109,7 +115,7 @@ void print_report(const Scene& scene, const RunFigures& f) {
         const auto published = p.errors.find(name);
         line += published == p.errors.end() ? fmt::format("  {:>24}", "-")
                                             : fmt::format("  {:>12.4e} ({:>+7.2f} %)", published->second,
-                                                          100 * (value / published->second - 1));
+                                                          percent_above(value / published->second));
       }
       fmt::print("{}\n", line);
     }

@@ -39,4 +39,7 @@ void print_resultant(const Scene& scene, const BalanceReport& balance, const std
 
 void print_report(const Scene& scene, const RunFigures& figures);
 
+/// How far a ratio lies above 1, in percent for two decimals: what rounds to zero has no sign left.
+double percent_above(double ratio);
+
 }  // namespace vsb::app

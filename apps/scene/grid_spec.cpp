@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
+
+#include "scene/units.hpp"
 
 namespace vsb::app {
 
-namespace {
-
-/// The place of coordinates along the logical axes of a mapped grid.
 Point place(const GridSpec& grid, const Point& q) {
   if (!grid.polar) return q;
   double cosine = std::cos(q[1]), sine = std::sin(q[1]);
@@ -19,7 +19,20 @@ Point place(const GridSpec& grid, const Point& q) {
   return {grid.center[0] + q[0] * cosine, grid.center[1] + q[0] * sine, q[2]};
 }
 
-}  // namespace
+Point logical_coordinates(const GridSpec& grid, const Point& x) {
+  if (!grid.polar) return x;
+  const double dx = x[0] - grid.center[0], dy = x[1] - grid.center[1], turn = 2 * pi;
+  const double middle = 0.5 * (grid.coordinates[1].front() + grid.coordinates[1].back());
+  double theta = std::atan2(dy, dx);
+  while (theta < middle - pi) theta += turn;
+  while (theta > middle + pi) theta -= turn;
+  return {std::hypot(dx, dy), theta, x[2]};
+}
+
+std::pair<double, double> extent(const GridSpec& grid, size_t axis) {
+  if (grid.mapped()) return {grid.coordinates[axis].front(), grid.coordinates[axis].back()};
+  return {grid.lower[axis], grid.lower[axis] + grid.cells[axis] * grid.spacing[axis]};
+}
 
 std::string GridSpec::axis_name(size_t axis) const {
   static const char* const names[2][3] = {{"x", "y", "z"}, {"r", "theta", "z"}};
@@ -51,9 +64,7 @@ GridBox bounding_box(const GridSpec& grid, int dimension) {
   const auto d = static_cast<size_t>(dimension);
   if (!grid.polar) {
     for (size_t i = 0; i < d; ++i) {
-      box.lower[i] = grid.lower[i];
-      box.upper[i] =
-          grid.mapped() ? grid.coordinates[i].back() : grid.lower[i] + grid.cells[i] * grid.spacing[i];
+      std::tie(box.lower[i], box.upper[i]) = extent(grid, i);
     }
     return box;
   }
@@ -76,24 +87,11 @@ GridBox bounding_box(const GridSpec& grid, int dimension) {
 }
 
 bool contains(const GridSpec& grid, int dimension, const Point& x) {
-  Point q = x, low, high;
-  if (grid.polar) {
-    q[0] = std::hypot(x[0] - grid.center[0], x[1] - grid.center[1]);
-    q[1] = std::atan2(x[1] - grid.center[1], x[0] - grid.center[0]);
-    const double turn = 2 * std::acos(-1.0);
-    while (q[1] < grid.coordinates[1].front()) q[1] += turn;
-    while (q[1] >= grid.coordinates[1].front() + turn) q[1] -= turn;
-    for (size_t i = 0; i < 3; ++i) {
-      low[i] = grid.coordinates[i].empty() ? 0 : grid.coordinates[i].front();
-      high[i] = grid.coordinates[i].empty() ? 0 : grid.coordinates[i].back();
-    }
-  } else {
-    const auto box = bounding_box(grid, dimension);
-    low = box.lower;
-    high = box.upper;
+  const Point q = logical_coordinates(grid, x);
+  for (size_t i = 0; i < static_cast<size_t>(dimension); ++i) {
+    const auto [low, high] = extent(grid, i);
+    if (!(q[i] >= low && q[i] <= high)) return false;
   }
-  for (size_t i = 0; i < static_cast<size_t>(dimension); ++i)
-    if (!(q[i] >= low[i] && q[i] <= high[i])) return false;
   return true;
 }
 

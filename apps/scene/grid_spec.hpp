@@ -7,6 +7,7 @@
 
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scene/region.hpp"
@@ -26,6 +27,14 @@ struct GridSpec {
   /// What a logical axis is called, as in the names of the faces.
   std::string axis_name(size_t axis) const;
 };
+
+/// The place of coordinates along the logical axes (r in m, theta in radians on a polar grid), and back; the
+/// angle is the one nearest to the grid's.
+Point place(const GridSpec& grid, const Point& q);
+Point logical_coordinates(const GridSpec& grid, const Point& x);
+
+/// First and last node coordinate along a logical axis.
+std::pair<double, double> extent(const GridSpec& grid, size_t axis);
 
 /// Where a node is; logical axes beyond the dimension count for nothing.
 Point node_position(const GridSpec& grid, int dimension, const std::array<int, 3>& ijk);

@@ -75,6 +75,7 @@ GridSpec read_polar(TableReader& document, int dimension) {
   if (dimension == 1)
     document.fail(*document.source().get("polar"), "polar", "a polar grid is for dimension 2 or 3");
   TableReader r = document.table("polar");
+  r.allow_only({"center", "radii", "radial_cells", "angles", "angular_cells", "z"});
   GridSpec grid;
   grid.polar = true;
   const auto center = r.numbers("center", 2, Range::any(), std::vector<double>{0, 0}, "m");
@@ -129,6 +130,10 @@ unsigned char read_face(TableReader& r, const std::string& key, size_t axis, int
 }  // namespace
 
 GridSpec read_grid(TableReader r, int dimension) {
+  std::vector<std::string> keys = {"lower", "upper", "spacing"};
+  keys.insert(keys.end(), axis_names.begin(), axis_names.begin() + dimension);
+  keys.emplace_back("polar");
+  r.allow_only(keys);
   const bool rectilinear = r.has("x") || r.has("y") || r.has("z"), polar = r.has("polar");
   const bool uniform = r.has("lower") || r.has("upper") || r.has("spacing");
   if (int(rectilinear) + int(polar) + int(uniform) > 1) {

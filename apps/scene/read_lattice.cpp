@@ -22,6 +22,7 @@ CellLattice read_cells(TableReader& body_table, size_t d) {
 
 UniformLattice read_uniform(TableReader r, const GridSpec& grid, size_t d) {
   UniformLattice lattice;
+  r.allow_only({"spacing", "origin"});
   const auto spacing = r.number_or_numbers("spacing", d, Range::positive(), {}, "m");
   const Point corner = bounding_box(grid, static_cast<int>(d)).lower;
   const std::vector<double> lower(corner.begin(), corner.begin() + static_cast<std::ptrdiff_t>(d));
@@ -45,6 +46,7 @@ UniformLattice read_uniform(TableReader r, const GridSpec& grid, size_t d) {
 
 ConcentricLattice read_concentric(TableReader r, size_t d) {
   ConcentricLattice lattice;
+  r.allow_only({"center", "radii", "rings", "per_ring", "angles", "layers"});
   const auto center = r.numbers("center", 2, Range::any(), {}, "m, x and y");
   std::copy(center.begin(), center.end(), lattice.center.begin());
   const auto radii = r.numbers("radii", 2, Range::at_least(0), {}, "m, inner and outer");
@@ -64,6 +66,7 @@ ConcentricLattice read_concentric(TableReader r, size_t d) {
   if (d == 3) {
     if (!r.has("layers")) r.missing("layers", "a table with lower, upper and count, along z");
     TableReader layers = r.table("layers");
+    layers.allow_only({"lower", "upper", "count"});
     lattice.lower = layers.number("lower", Range::any(), {}, "m along z");
     lattice.upper = layers.number("upper", {lattice.lower, Range::any().max, true, false}, {}, "m along z");
     lattice.layers = static_cast<int>(layers.integer("count", 1, 1'000'000));

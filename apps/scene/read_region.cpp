@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 namespace vsb::app {
 
@@ -35,6 +36,12 @@ Region parse_simple(const std::string& kind, TableReader& r, const toml::node& a
                     const std::string& key, int dimension) {
   const auto d = static_cast<size_t>(dimension);
   const auto vector = [&](const char* name) { return point_of(r.numbers(name, d, Range::any())); };
+  static const std::map<std::string, std::vector<std::string>> keys = {
+      {"box", {"lower", "upper"}},          {"ball", {"center", "radius"}},
+      {"disc", {"center", "radius"}},       {"cylinder", {"axis", "center", "radius", "lower", "upper"}},
+      {"ellipse", {"center", "semi_axes"}}, {"ellipsoid", {"center", "semi_axes"}},
+      {"half_space", {"point", "normal"}}};
+  r.allow_only(keys.at(kind));
   if (kind == "box") {
     const Point lower = vector("lower"), upper = vector("upper");
     for (size_t i = 0; i < d; ++i)

@@ -21,6 +21,7 @@ namespace {
 const std::vector<std::string> axis_names = {"x", "y", "z"};
 
 LinearElasticSpec read_material(TableReader r) {
+  r.allow_only({"law", "youngs_modulus", "poisson_ratio"});
   r.choice("law", {"linear_elastic"}, "linear_elastic");
   LinearElasticSpec m{};
   m.youngs_modulus = r.number("youngs_modulus", Range::positive(), {}, "Pa");
@@ -55,6 +56,8 @@ Affine<std::array<double, N>> read_affine(TableReader& r, const std::string& key
 BodySpec read_body(TableReader r, const GridSpec& grid, int dimension, size_t number) {
   const auto d = static_cast<size_t>(dimension);
   BodySpec body;
+  r.allow_only({"name", "shape", "particles_per_cell", "lattice", "jitter", "seed", "density", "stress",
+                "velocity", "material"});
   body.name = r.text("name", fmt::format("body {}", number + 1));
   body.region = read_region(r, "shape", dimension, false);
   read_lattice(r, grid, dimension, body);
@@ -98,6 +101,7 @@ TimeFunction read_table(TableReader& r) {
 
 TimeFunction read_sine(TableReader r) {
   TimeFunction::Sine sine{};
+  r.allow_only({"period", "amplitude", "mean", "start", "phase"});
   sine.period = r.number("period", Range::positive(), {}, "s");
   sine.amplitude = r.number("amplitude", Range::any(), 1.0, "share of the full load");
   sine.mean = r.number("mean", Range::any(), 0.0, "share of the full load; the factor before 'start'");
@@ -110,9 +114,7 @@ TimeFunction read_sine(TableReader r) {
 TimeShape read_time_function(TableReader r) {
   static const std::vector<std::string> forms = {"ramp", "ramp_steps", "smooth_ramp", "smooth_ramp_steps",
                                                  "step", "table",      "sine"};
-  for (const auto& [key, value] : r.source())
-    if (std::find(forms.begin(), forms.end(), std::string(key.str())) == forms.end())
-      r.unknown(key, value, forms);
+  r.allow_only(forms);
   if (std::count_if(forms.begin(), forms.end(), [&](const auto& key) { return r.has(key); }) > 1) {
     const auto first = r.source().begin();
     r.fail(first->second, std::string(first->first.str()),
@@ -139,12 +141,17 @@ TimeShape read_time_function(TableReader r) {
     shape.in_seconds = read_sine(r.table("sine"));
   } else {
     const double duration =
-        r.number("ramp", Range::at_least(0), 0.0, "s to full load; 0: full load from the start");
+        r.number("ramp", Range::at_least(0), 0.0,
+                 "s to full load; 0: full load from the start; or ramp_steps, smooth_ramp, "
+                 "smooth_ramp_steps, step, table, sine");
     if (duration > 0) shape.in_seconds = TimeFunction::ramp(duration);
   }
   r.finish();
   return shape;
 }
+
+const std::vector<std::string> ellipse_keys = {"semi_major", "semi_minor", "pressure", "far_stress",
+                                               "far_ratio"};
 
 EllipseSpec read_ellipse(TableReader& r) {
   EllipseSpec e{};
@@ -165,6 +172,8 @@ Imposition read_imposition(TableReader& r) {
 
 TractionSpec read_traction(TableReader r, int dimension, size_t number, TimeShape& time) {
   TractionSpec traction;
+  r.allow_only({"name", "imposition", "pressure", "stress", "exact_ellipse", "surface", "layer",
+                "points_per_cell", "time"});
   traction.name = r.text("name", fmt::format("traction {}", number + 1));
   traction.imposition = read_imposition(r);
   if (int(r.has("pressure")) + int(r.has("stress")) + int(r.has("exact_ellipse")) > 1) {
@@ -175,14 +184,17 @@ TractionSpec read_traction(TableReader r, int dimension, size_t number, TimeShap
     if (dimension != 2)
       r.fail(*r.source().get("exact_ellipse"), "exact_ellipse", "is a field of plane strain, dimension = 2");
     TableReader e = r.table("exact_ellipse");
+    e.allow_only(ellipse_keys);
     traction.exact = read_ellipse(e);
     e.finish();
   } else if (r.has("stress")) {
     const auto s =
-        r.numbers("stress", 6, Range::any(), {}, "Pa, virtual stress, tension positive: xx yy zz xy yz xz");
+        r.numbers("stress", 6, Range::any(), {},
+                  "Pa, virtual stress, tension positive: xx yy zz xy yz xz; or pressure, or exact_ellipse");
     std::copy(s.begin(), s.end(), traction.virtual_stress.begin());
   } else {
-    const double p = r.number("pressure", Range::any(), {}, "Pa, positive in compression");
+    const double p = r.number("pressure", Range::any(), {},
+                              "Pa, positive in compression; or stress (xx yy zz xy yz xz), or exact_ellipse");
     traction.virtual_stress = {-p, -p, -p, 0, 0, 0};
   }
   traction.surface = read_region(r, "surface", dimension, true);
@@ -226,15 +238,16 @@ double critical_time(const Scene& scene) {
 
 TimeSpec read_time(TableReader r, const Scene& scene) {
   TimeSpec t;
+  r.allow_only({"dt", "kappa", "steps", "until_static"});
   const double critical = critical_time(scene);
   if (r.has("dt") && r.has("kappa"))
     r.fail(*r.source().get("kappa"), "kappa", "give either dt or kappa, not both");
   if (r.has("dt")) {
     t.dt = r.number("dt", {0, 2 * critical, true, false}, {},
-                    fmt::format("s; a compression wave crosses a cell in {:.6g} s", critical));
+                    fmt::format("s; a compression wave crosses a cell in {:.6g} s; or kappa", critical));
     t.kappa = t.dt / critical;
   } else {
-    t.kappa = r.number("kappa", {0, 2, true, false}, {}, "share of the critical time step, Eq. (29)");
+    t.kappa = r.number("kappa", {0, 2, true, false}, {}, "share of the critical time step, Eq. (29); or dt");
     t.dt = t.kappa * critical;
   }
   const long long most = 1'000'000'000'000LL;
@@ -247,10 +260,12 @@ TimeSpec read_time(TableReader r, const Scene& scene) {
     c.force_ratio = s.number("force_ratio", {0, 1, true, true}, 1e-6, "unbalanced force / internal force");
     c.energy_ratio = s.number("energy_ratio", {0, 1, true, true}, 1e-9, "kinetic energy / strain energy");
     c.check_every = s.integer("check_every", 1, most, 100, "steps");
-    t.steps = s.integer("max_steps", 1, most, 1'000'000LL);
+    t.steps = s.integer("max_steps", 1, most, 1'000'000LL,
+                        "the last step in any case; or, in place of until_static, steps");
     s.finish();
     t.until_static = c;
   } else {
+    if (!r.has("steps")) r.missing("steps", "an integer >= 1, or a table until_static = {}");
     t.steps = r.integer("steps", 1, most, {}, "or a table until_static");
   }
   r.finish();
@@ -274,6 +289,9 @@ OutputSpec read_output(TableReader r) {
 Comparison read_comparison(TableReader& document) {
   if (!document.has("compare")) return {};
   TableReader r = document.table("compare");
+  std::vector<std::string> keys = {"solution", "length", "traction", "inner_radius", "outer_radius"};
+  keys.insert(keys.end(), ellipse_keys.begin(), ellipse_keys.end());
+  r.allow_only(keys);
   const std::string solution = r.choice("solution", {"column", "cylinder", "ellipse"});
   Comparison comparison;
   if (solution == "column") {
@@ -307,11 +325,27 @@ namespace {
 
 Published read_published(TableReader r, const std::vector<std::string>& names) {
   Published p;
+  auto keys = names;
+  keys.emplace_back("source");
+  r.allow_only(keys);
   p.source = r.text("source");
   for (const auto& name : names)
     if (r.has(name)) p.errors[name] = r.number(name, Range::at_least(0));
   r.finish();
   return p;
+}
+
+template <class Value>
+bool is_zero(const Affine<Value>& field) {
+  return field.value == Value{} && field.gradient == std::array<Value, 3>{};
+}
+
+/// Whether anything strains or moves the bodies.
+bool is_loaded(const Scene& scene) {
+  const auto acts = [](const TractionSpec& t) { return t.exact || t.virtual_stress != Stress6{}; };
+  const auto begins_loaded = [](const BodySpec& b) { return !is_zero(b.stress) || !is_zero(b.velocity); };
+  return scene.gravity != Point{} || std::any_of(scene.tractions.begin(), scene.tractions.end(), acts) ||
+         std::any_of(scene.bodies.begin(), scene.bodies.end(), begins_loaded);
 }
 
 }  // namespace
@@ -320,6 +354,8 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
   const toml::table document = parse_scene_file(path, overrides);
   ResolvedTable resolved;
   TableReader r(document, "", resolved);
+  r.allow_only({"name", "title", "dimension", "precision", "gravity", "grid", "faces", "body", "traction",
+                "method", "time", "output", "compare", "published"});
   Scene scene;
   scene.name = r.text("name", std::filesystem::path(path).stem().string());
   if (scene.name.empty() || scene.name.find_first_of("/\\ \t\n") != std::string::npos ||
@@ -360,6 +396,11 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
              fmt::format("traction '{}' is a sine, which never settles; give time.steps instead",
                          scene.tractions[k].name));
   }
+  if (scene.time.until_static && !is_loaded(scene))
+    r.fail(
+        *document["time"]["until_static"].node(), "time.until_static",
+        "nothing loads the bodies (no traction, gravity, initial stress or velocity), so there is no static "
+        "state to run to");
   scene.output = read_output(r.table("output"));
   scene.compare = read_comparison(r);
   for (auto& table : r.tables("published"))

@@ -3,6 +3,7 @@
 /// The scene file with the overrides of the command line put in, before anything is checked.
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <sstream>
 #include <variant>
 
@@ -52,10 +53,15 @@ void apply_override(toml::table& document, const std::string& argument) {
   auto value = parse_value(argument.substr(equals + 1), source);
   const auto parts = split_path(argument.substr(0, equals), argument);
   toml::node* node = &document;
+  std::string so_far;
   for (size_t i = 0; i < parts.size(); ++i) {
     const bool last = i + 1 == parts.size();
     if (const auto* key = std::get_if<std::string>(&parts[i])) {
       auto* table = node->as_table();
+      if (const auto* array = node->as_array(); array && !array->empty() && array->get(0)->is_table()) {
+        throw SceneError(fmt::format("{}: '{}' is an array of tables; say which one: {}[0]{}", source, so_far,
+                                     so_far, argument.substr(so_far.size(), equals - so_far.size())));
+      }
       if (!table) throw SceneError(fmt::format("{}: '{}' is not inside a table", source, *key));
       if (last) {
         table->insert_or_assign(*key, std::move(*value.get("value")));
@@ -67,6 +73,7 @@ void apply_override(toml::table& document, const std::string& argument) {
         table->insert(*key, toml::parse("", source));
       }
       node = table->get(*key);
+      so_far += (so_far.empty() ? "" : ".") + *key;
     } else {
       auto* array = node->as_array();
       const size_t index = std::get<size_t>(parts[i]);
@@ -78,6 +85,7 @@ void apply_override(toml::table& document, const std::string& argument) {
         return;
       }
       node = array->get(index);
+      so_far += fmt::format("[{}]", index);
     }
   }
 }
@@ -86,6 +94,8 @@ void apply_override(toml::table& document, const std::string& argument) {
 
 toml::table parse_scene_file(const std::string& path, const std::vector<std::string>& overrides) {
   toml::table document;
+  if (std::error_code error; std::filesystem::is_directory(path, error))
+    throw SceneError(fmt::format("{}: is a directory, not a TOML file", path));
   try {
     document = toml::parse_file(path);
   } catch (const toml::parse_error& error) {

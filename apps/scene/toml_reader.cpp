@@ -89,7 +89,12 @@ std::string Range::text() const {
   std::vector<std::string> parts;
   if (std::isfinite(min)) parts.push_back(fmt::format("{} {}", min_open ? ">" : ">=", min));
   if (std::isfinite(max)) parts.push_back(fmt::format("{} {}", max_open ? "<" : "<=", max));
-  return parts.empty() ? "finite" : fmt::format("{}", fmt::join(parts, " and "));
+  return fmt::format("{}", fmt::join(parts, " and "));
+}
+
+std::string Range::of(const std::string& noun) const {
+  const std::string limits = text();
+  return limits.empty() ? "finite " + noun : noun + " " + limits;
 }
 
 std::string location(const toml::node& node) {
@@ -146,7 +151,15 @@ bool TableReader::has(const std::string& key) const {
   return table_->contains(key);
 }
 
+void TableReader::allow_only(std::vector<std::string> keys) {
+  for (const auto& [key, value] : *table_)
+    if (std::find(keys.begin(), keys.end(), std::string(key.str())) == keys.end()) unknown(key, value, keys);
+  allowed_ = std::move(keys);
+}
+
 const toml::node* TableReader::find(const std::string& key) {
+  if (!allowed_.empty() && std::find(allowed_.begin(), allowed_.end(), key) == allowed_.end())
+    throw std::logic_error(fmt::format("the key {} is read but not in allow_only", name(key)));
   known_.push_back(key);
   return table_->get(key);
 }
@@ -156,11 +169,6 @@ void TableReader::fail(const toml::node& at, const std::string& key, const std::
 }
 
 void TableReader::missing(const std::string& key, const std::string& what) const {
-  for (const auto& [written, value] : *table_) {  // a misspelling is the likelier mistake
-    const std::string text(written.str());
-    if (std::find(known_.begin(), known_.end(), text) == known_.end() && !did_you_mean(text, {key}).empty())
-      unknown(written, value, {key});
-  }
   const bool written = static_cast<bool>(table_->source().begin);
   throw SceneError(fmt::format("{}: {} is missing: {}", written ? location(*table_) : *table_->source().path,
                                name(key), what));
@@ -174,15 +182,18 @@ double checked_number(const TableReader& reader, const toml::node& node, const s
                       const Range& range) {
   const auto value = node.value<double>();
   if (!(node.is_integer() || node.is_floating_point()) || !value)
-    reader.fail(node, key, "must be a number " + range.text());
-  if (!std::isfinite(*value) || !range.contains(*value)) reader.fail(node, key, "must be " + range.text());
+    reader.fail(node, key, "must be a " + range.of("number"));
+  const std::string limits = range.text();
+  if (!std::isfinite(*value))
+    reader.fail(node, key, "must be finite" + (limits.empty() ? "" : " and " + limits));
+  if (!range.contains(*value)) reader.fail(node, key, "must be " + limits);
   return *value;
 }
 
 double TableReader::number(const std::string& key, const Range& range, std::optional<double> fallback,
                            const std::string& unit) {
   const auto* node = find(key);
-  if (!node && !fallback) missing(key, "a number " + range.text());
+  if (!node && !fallback) missing(key, "a " + range.of("number"));
   const double value = node ? checked_number(*this, *node, key, range) : *fallback;
   record(key, number_text(value), unit);
   return value;
@@ -237,7 +248,7 @@ std::string TableReader::choice(const std::string& key, const std::vector<std::s
   const std::string value = node ? node->as_string()->get() : *fallback;
   if (std::find(allowed.begin(), allowed.end(), value) == allowed.end())
     fail(*node, key, "must be " + one_of + did_you_mean(value, allowed));
-  record(key, quoted(value));
+  record(key, quoted(value), allowed.size() > 1 ? fmt::format("one of {}", fmt::join(allowed, ", ")) : "");
   return value;
 }
 
@@ -246,7 +257,7 @@ std::vector<double> TableReader::numbers(const std::string& key, size_t count, c
                                          const std::string& unit) {
   const auto* node = find(key);
   const std::string what =
-      fmt::format("an array of {} number{} {}", count, count == 1 ? "" : "s", range.text());
+      fmt::format("an array of {} {}", count, range.of(count == 1 ? "number" : "numbers"));
   if (!node && !fallback) missing(key, what);
   std::vector<double> values;
   if (node) {

@@ -36,7 +36,9 @@ struct Range {
   static Range inside(double low, double high) { return {low, high, true, true}; }
 
   bool contains(double x) const { return (min_open ? x > min : x >= min) && (max_open ? x < max : x <= max); }
-  std::string text() const;  ///< "> 0", ">= 0 and <= 1", "finite"
+  std::string text() const;  ///< "> 0", ">= 0 and <= 1"; empty for any
+  /// "number > 0", "finite numbers".
+  std::string of(const std::string& noun) const;
 };
 
 /// Where a value was written: "file:line:column", or the command line's --set.
@@ -70,6 +72,10 @@ class TableReader {
   TableReader(const toml::table& table, std::string path, ResolvedTable& resolved);
 
   bool has(const std::string& key) const;
+
+  /// Throws for any key but these. Called first, so that a misspelling is answered with all keys of the
+  /// table.
+  void allow_only(std::vector<std::string> keys);
 
   // Each reads one key; without a default the key must be there. `unit` becomes a comment of the resolved
   // document.
@@ -121,7 +127,8 @@ class TableReader {
   const toml::table* table_;
   std::string path_;
   ResolvedTable* resolved_;
-  std::vector<std::string> known_;
+  std::vector<std::string> allowed_;  ///< of allow_only; empty: not called
+  std::vector<std::string> known_;    ///< asked for so far
 };
 
 /// The keys of an enumeration-like table or value that `key` resembles most, as ", did you mean 'x'?", or

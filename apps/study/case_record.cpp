@@ -83,7 +83,7 @@ std::optional<CaseRecord> read_case_record(const std::string& directory, const s
 void write_case_record(const std::string& directory, const std::string& resolved, const CaseRecord& r) {
   std::error_code error;
   fs::create_directories(directory, error);
-  if (error) throw FileError(fmt::format("{}: {}", directory, error.message()));
+  if (error) throw FileError(fmt::format("{}: cannot create the directory ({})", directory, error.message()));
   std::string text = fmt::format(
       "# What 'vsb study' knows of this case; without it, the case runs anew.\nprogram = {}\nstate = {}\n"
       "message = {}\nparticles = {}\nseconds = {}\nsteps_timed = {}\nend_time = {}\nsteps = {}\n"

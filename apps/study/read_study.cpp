@@ -25,6 +25,7 @@ struct Inherited {
   std::string scene, source, sweep;
   std::vector<std::string> set;
   std::optional<double> tolerance;
+  bool expect_static = true;
 };
 
 std::vector<std::string> read_set(TableReader& r) {
@@ -40,6 +41,13 @@ std::vector<std::string> read_set(TableReader& r) {
   return set;
 }
 
+const std::vector<std::string> inherited_keys = {"scene", "source", "tolerance", "set", "expect_static"};
+
+std::vector<std::string> with_inherited(std::vector<std::string> keys) {
+  keys.insert(keys.end(), inherited_keys.begin(), inherited_keys.end());
+  return keys;
+}
+
 /// Reads the keys that a table may change for everything inside it.
 Inherited read_inherited(TableReader& r, Inherited outer, const fs::path& folder) {
   if (const auto* node = r.node("scene")) {
@@ -48,6 +56,7 @@ Inherited read_inherited(TableReader& r, Inherited outer, const fs::path& folder
     if (!fs::exists(outer.scene)) r.fail(*node, "scene", fmt::format("there is no file {}", outer.scene));
   }
   outer.source = r.text("source", outer.source);
+  outer.expect_static = r.boolean("expect_static", outer.expect_static);
   if (r.node("tolerance")) outer.tolerance = r.number("tolerance", Range::at_least(0));
   const auto set = read_set(r);
   outer.set.insert(outer.set.end(), set.begin(), set.end());
@@ -76,6 +85,7 @@ Expectation read_expectation(TableReader& parent, const std::string& key, const 
     return e;
   }
   TableReader r = parent.table(key);
+  r.allow_only({"source", "value", "tolerance", "lowest", "highest"});
   e.source = r.text("source", e.source);
   const bool has_lowest = r.node("lowest"), has_highest = r.node("highest");
   if (has_lowest || has_highest) {
@@ -125,6 +135,7 @@ class StudyReader {
     ResolvedTable resolved;
     TableReader r(document, "", resolved);
     study_.name = fs::path(path_).stem().string();
+    r.allow_only(with_inherited({"title", "published_source", "rates", "axis", "series", "relation"}));
     study_.title = r.text("title");
     study_.published_source = r.text("published_source", "published");
     study_.rates = r.boolean("rates", false);
@@ -145,6 +156,7 @@ class StudyReader {
   void read_axis(TableReader& document) {
     if (!document.has("axis")) document.missing("axis", "a table with name, and unit, log or labels");
     TableReader r = document.table("axis");
+    r.allow_only({"name", "labels", "unit", "log"});
     study_.axis.name = r.text("name");
     study_.axis.labels = r.boolean("labels", false);
     if (!study_.axis.labels) {
@@ -160,6 +172,7 @@ class StudyReader {
   void read_series(TableReader& r, const Inherited& study) {
     StudySeries series;
     const auto* name = r.source().get("name");
+    r.allow_only(with_inherited({"name", "sweep", "case"}));
     series.name = r.text("name");
     if (slug(series.name).empty()) r.fail(*name, "name", "must have a letter or a digit");
     for (const auto& other : study_.series)
@@ -191,6 +204,7 @@ class StudyReader {
 
   void read_case(TableReader& r, StudySeries& series, const Inherited& outer) {
     StudyCase c;
+    r.allow_only(with_inherited({"axis", "label", "fine", "expect_failure", "expect", "published"}));
     const auto& place = read_place(r, c, series.cases.size());
     c.directory = fmt::format("cases/{}_{}", slug(series.name), slug(c.text));
     for (const auto& other : series.cases)
@@ -203,6 +217,7 @@ class StudyReader {
     if (inherited.scene.empty())
       r.missing("scene", "the path of a scene file, here, in the series or in the study");
     c.expected_failure = r.text("expect_failure", "");
+    c.expect_static = inherited.expect_static;
     read_case_scene(place, c, inherited);
     read_figures(r, c, inherited);
     r.finish();
@@ -244,6 +259,7 @@ class StudyReader {
     if (!relation.has(key)) relation.missing(key, "a case: { series = ..., axis = ... (or label) }");
     TableReader r = relation.table(key);
     Relation::Place place;
+    r.allow_only({"series", "axis", "label"});
     const auto* series = r.source().get("series");
     const std::string name = r.text("series");
     while (place.series < study_.series.size() && study_.series[place.series].name != name) ++place.series;
@@ -265,6 +281,7 @@ class StudyReader {
 
   void read_relation(TableReader& r, const Inherited& study) {
     Relation relation;
+    r.allow_only({"title", "figure", "first", "second", "source", "ratio", "difference", "rate"});
     relation.title = r.text("title");
     relation.figure = r.text("figure");
     relation.first = read_place_of(r, "first", relation.figure);

@@ -27,12 +27,12 @@ void take_figures(CaseRecord& record, const Scene& scene, const RunResult& resul
   record.seconds += figures.seconds;
   record.steps_timed += figures.steps_timed;
   record.steps = figures.steps;
-  if (result.code != exit_done) return;
+  if (result.code != exit_done && result.code != exit_not_static) return;
   record.state = CaseRecord::State::finished;
   record.end_time = static_cast<double>(figures.steps) * scene.time.dt;
   record.state_hash = figures.state_hash;
   record.figures = named_figures(scene, figures);
-  if (scene.time.until_static && !figures.found_static)
+  if (result.code == exit_not_static)
     record.message = fmt::format("not static after max_steps = {}", scene.time.steps);
 }
 
@@ -42,7 +42,7 @@ ExitCode make(const Scene& scene, const RunOptions& options, CaseRecord record, 
     ExitCode code = exit_done;
     try {
       const auto result = run(scene, options);
-      code = result.code;
+      code = result.code == exit_interrupted ? exit_interrupted : exit_done;
       take_figures(record, scene, result);
     } catch (const SetupError& error) {
       record.state = CaseRecord::State::failed;

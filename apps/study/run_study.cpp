@@ -56,7 +56,7 @@ std::string line_text(const StudyLine& line, const std::string& published_source
       fmt::format("  {:<5}{:<14}{:>12}", verdict, line.figure, line.value ? number(*line.value) : "-");
   const auto deviation = line.deviation();
   std::string beside = line.judged ? expected_text(line.expectation) : "";
-  if (deviation) beside += fmt::format(" ({:+.2f} %)", 100 * *deviation);
+  if (deviation) beside += fmt::format(" ({:+.2f} %)", percent_above(1 + *deviation));
   text += fmt::format("  {:<42}", beside);
   if (line.rate) text += fmt::format("  rate {:5.2f}", *line.rate);
   if (line.published) text += fmt::format("  {} {}", published_source, number(*line.published));
@@ -138,7 +138,9 @@ class StudyRun {
   void create_directory() const {
     std::error_code error;
     std::filesystem::create_directories(options_.directory, error);
-    if (error) throw FileError(fmt::format("{}: {}", options_.directory, error.message()));
+    if (error)
+      throw FileError(
+          fmt::format("{}: cannot create the directory ({})", options_.directory, error.message()));
   }
 
   double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }

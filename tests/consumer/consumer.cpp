@@ -41,7 +41,8 @@ int run() {
   const vsb::LinearBasis<2, double> basis{vsb::UniformGrid<2, double>({{1.0, 0.0}}, {{1.0, 1.0}}, {{5, 1}})};
   auto state = vsb::make_state(particles, basis);
   for (int node = 0; node < basis.node_count(); ++node) {
-    state.nodes.fixed_components(node) = basis.grid.node_coordinates(node)[0] == 0 ? 3 : 2;
+    // Bit i: component i is held; bit k: traction k is declared here.
+    state.nodes.fixed_components(node) = basis.grid.node_position(node)[0] == 1.0 ? 3 : 2;
     state.occupancy.tractions(node) = 1;
   }
   vsb::UniformVirtualStress<2, double> load{};

@@ -143,7 +143,7 @@ TEST_CASE("a node without particles sums to zero, also where it had some before"
                         NoVirtualStress{}, Vector<2, double>::zero(), strategy);
       const auto sums = read(nodes.sums);
       for (int I = 0; I < basis.node_count(); ++I) {
-        const auto ijk = grid.node_coordinates(I);
+        const auto ijk = grid.node_ijk(I);
         CHECK(sums(I, 0) == ((ijk[0] == cell || ijk[0] == cell + 1) && ijk[1] < 2 ? 0.25 : 0));
       }
     }

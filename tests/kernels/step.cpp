@@ -160,7 +160,7 @@ TEMPLATE_TEST_CASE_SIG("a column with a cut last cell comes to rest at the press
   auto state = make_state(body.particles, basis);
   edit(state.nodes.fixed_components, [&](const auto& host) {
     for (int I = 0; I < basis.node_count(); ++I)  // rollers on the sides, the foot fixed
-      host(I) = static_cast<ComponentMask>((grid.node_coordinates(I)[0] == 0 ? 1 : 0) | 6);
+      host(I) = static_cast<ComponentMask>((grid.node_ijk(I)[0] == 0 ? 1 : 0) | 6);
   });
   Kokkos::deep_copy(state.occupancy.tractions, 1u);
   UniformVirtualStress<Dim, double> load;

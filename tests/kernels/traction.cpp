@@ -191,7 +191,7 @@ TEMPLATE_TEST_CASE_SIG("a pressure on one face of a block gives the surface inte
   for (int i = 1; i < Dim; ++i) area *= 4 * grid.spacing[i];
   int loaded = 0;
   for (int I = 0; I < body.nodes.count(); ++I) {
-    const auto ijk = grid.node_coordinates(I);
+    const auto ijk = grid.node_ijk(I);
     bool on_face = ijk[0] == 6;
     for (int i = 1; i < Dim; ++i) on_face = on_face && ijk[i] >= 2 && ijk[i] <= 6;
     loaded += on_face;
@@ -221,7 +221,7 @@ TEMPLATE_TEST_CASE_SIG("a pressure all around a block pushes each face inwards a
   for (int i = 0; i < Dim; ++i) {
     double low = 0, high = 0, area = 1;
     for (int I = 0; I < body.nodes.count(); ++I) {
-      const int at = grid.node_coordinates(I)[i];
+      const int at = grid.node_ijk(I)[i];
       (at < 4 ? low : high) += sums(I, 1 + Dim + i);
     }
     for (int j = 0; j < Dim; ++j)

@@ -107,7 +107,8 @@ class BadScenes(ProgramTest):
     def test_15_contradictions(self):
         self.refuse(self.changed("kappa = 0.5", "kappa = 0.5\ndt = 0.001"), "either dt or kappa")
         self.refuse(self.changed("steps = 10", "steps = 10\nuntil_static = {}"), "either steps or until_static")
-        self.refuse(self.changed("pressure = 1e3", "pressure = 1e3\nstress = [1, 0, 0, 0, 0, 0]"), "not both")
+        self.refuse(self.changed("pressure = 1e3", "pressure = 1e3\nstress = [1, 0, 0, 0, 0, 0]"),
+                    "give one of pressure, stress")
         self.refuse(self.changed("pressure = 1e3", "pressure = 1e3\ntime = { ramp = 1, step = 2 }"), "one of ramp")
 
     def test_16_overrides_of_the_command_line(self):
@@ -118,6 +119,64 @@ class BadScenes(ProgramTest):
 
     def test_17_a_name_that_is_no_file_name(self):
         self.refuse('name = "../up"\n' + GOOD, "name", line=1)
+
+
+    def test_18_a_body_cut_off_at_an_open_face(self):
+        block = "lower = [1.0, 1.0], upper = [3.0, 3.0]"
+        bare = GOOD.replace("[[traction]]\npressure = 1e3\n", "")  # nothing but the cut to find fault with
+        for box, face in (("lower = [-0.2, 1.0], upper = [3.0, 3.0]", "x_min"), ("lower = [1.0, 1.0], upper = [5.0, 3.0]", "x_max"),
+                          ("lower = [1.0, -9.0], upper = [3.0, 3.0]", "y_min"), ("lower = [1.0, 1.0], upper = [3.0, 4.2]", "y_max")):
+            text = bare.replace(block, box)
+            self.refuse(text, "body 'block' reaches out of the grid at the open face " + face, "would be cut off")
+            self.refuse(text.replace("particles_per_cell = 2", "lattice.uniform = { spacing = 0.2 }"), "open face " + face)
+            for condition in ('"roller"', '"fixed"', '["x"]'):
+                self.run_scene(self.write(text + f"[faces]\n{face} = {condition}\n"), out="cut")
+        # Up to the face, between it and the first point beyond it, and without an end: not cut off.
+        for shape in ("box = { lower = [0.0, 1.0], upper = [3.0, 4.0] }", "box = { lower = [1.0, 1.0], upper = [4.1, 3.0] }",
+                      "half_space = { point = [0.0, 2.0], normal = [0.0, 1.0] }"):
+            self.run_scene(self.write(bare.replace("box = { %s }" % block, shape)), out="whole")
+
+    def test_19_a_body_cut_off_by_other_grids(self):
+        disc = "disc = { center = [0.0, 0.0], radius = 3.0 }"
+        rest = GOOD[GOOD.index("\n\n[[body]]"):].replace("[[traction]]\npressure = 1e3\n", "")
+        rest = rest.replace("box = { lower = [1.0, 1.0], upper = [3.0, 3.0] }", disc)
+        for grid, face in (("x = [-4.0, -1.0, 0.5, 1.5, 2.5], y = [-4.0, -2.0, 0.0, 2.0, 4.0]", "x_max"),
+                           ("x = [-4.0, -2.0, 0.0, 2.0, 4.0], y = [-2.5, -1.5, -1.0, 4.0]", "y_min"),
+                           ("polar = { radii = [0.1, 2.9], radial_cells = 14, angles = [0, 90], angular_cells = 9 }", "r_max"),
+                           ("polar = { radii = [0.1, 3.1], radial_cells = 15, angles = [0, 90], angular_cells = 9 }", "theta_m")):
+            closed = "[faces]\ntheta_min = ['y']\ntheta_max = ['x']\n" if face == "r_max" else ""
+            self.refuse(f"dimension = 2\ngrid = {{ {grid} }}" + rest + closed, "reaches out of the grid at the open face " + face)
+
+    def test_20_nothing_that_loads_a_run_until_static(self):
+        bare = GOOD.replace("[[traction]]\npressure = 1e3\n", "").replace("steps = 10", "until_static = { max_steps = 1 }")
+        for text in (bare, bare + "[[traction]]\npressure = 0.0\n"):
+            self.refuse(text, "time.until_static", "nothing loads the bodies")
+        for load in ("velocity = [0.1, 0.0]", "velocity = { dx = [0.1, 0.0] }", "stress = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]"):
+            self.run_scene(self.write(bare.replace("density", load + "\ndensity")), "--set", "time.until_static.max_steps=1")
+        for load in ("gravity = [0.0, 1.0]\n", "traction = [{ stress = [0, 0, 0, 1, 0, 0] }]\n"):
+            self.run_scene(self.write(load + bare), "--set", "time.until_static.max_steps=1")
+
+    def test_21_misspelt_keys_are_answered_with_all_keys_of_the_table(self):
+        for old, new, allowed in (
+                ("spacing =", "spacng =", "lower, polar, spacing, upper, x, y"),
+                ("density =", "densty =", "density, jitter, lattice, material, name, particles_per_cell, seed, shape, stress, velocity"),
+                ("kappa =", "kapa =", "dt, kappa, steps, until_static"),
+                ("dimension =", "dimensoin =", "body, compare, dimension, faces, gravity, grid, method, name, output, precision, "
+                 "published, time, title, traction"),
+                ("upper = [3.0, 3.0]", "uper = [3.0, 3.0]", "lower, upper"),
+                ("pressure =", "presure =", "exact_ellipse, imposition, layer, name, points_per_cell, pressure, stress, surface, time")):
+            self.refuse(self.changed(old, new), f"(allowed here: {allowed})", "did you mean")
+
+    def test_22_words(self):
+        done = vsb("run", self.folder)
+        self.assertEqual((done.returncode, done.stderr), (2, f"vsb: {self.folder}: is a directory, not a TOML file\n"))
+        self.refuse(self.changed("lower = [0.0, 0.0], upper = [4.0", "lower = [0.0], upper = [4.0"), "an array of 2 finite numbers")
+        self.refuse(self.changed("pressure = 1e3", 'pressure = "high"'), "must be a finite number")
+        self.refuse(self.changed("spacing = 0.5", "spacing = nan"), "must be finite and > 0")
+        self.refuse(self.changed("pressure = 1e3", "pressure = nan"), "must be finite\n")
+        self.refuse(GOOD, "'body' is an array of tables; say which one: body[0].density", extra=("--set", "body.density=1"))
+        self.refuse(GOOD, "say which one: body[0].material.youngs_modulus", extra=("--set", "body.material.youngs_modulus=1"))
+        self.refuse(self.changed("steps = 10\n", ""), "time.steps is missing", "until_static")
 
 
 class EveryKey(ProgramTest):
@@ -200,6 +259,31 @@ class CheckAndInfo(ProgramTest):
         expected = 0.2 * 0.25 / math.sqrt(1e9 * 0.8 / (1.2 * 0.6) / 1e3)  # Eq. (29)
         self.assertAlmostEqual(float(re.search(r"dt = ([\d.e+-]+) s", notes[1])[1]) / expected, 1, delta=1e-5)
         self.assertEqual(before, sorted(p.name for p in self.folder.iterdir()))
+
+    def test_the_estimate_of_a_run_until_static_is_a_limit(self):
+        notes = "\n".join(self.resolved(SCENES / "cylinder.toml")[0])
+        most, rate = map(float, re.search(r"estimated time at most ([\d.e+-]+) s, ([\d.e+-]+) s per 1000 steps", notes).groups())
+        self.assertAlmostEqual(most / (1000 * rate), 1, delta=0.02)  # max_steps = 1,000,000; three digits each
+        self.assertNotIn("at most", [line for line in self.resolved(SCENES / "column.toml")[0] if "estimated" in line][0])
+
+    def test_comments_name_the_choices(self):
+        done = vsb("check", SCENES / "cylinder.toml").stdout
+        for line in (r"precision = 'double' +# one of double, float", r"x_max = 'open' +# one of open, roller, fixed",
+                     r"pressure = .*# .*or stress .*, or exact_ellipse", r"ramp = .*or ramp_steps, .*table, sine",
+                     r"kappa = .*or dt", r"max_steps = .*in place of until_static, steps"):
+            self.assertRegex(done, line)
+
+    def test_doubtful_units_and_missing_damping_are_warned_of(self):
+        for command in (["check"], ["run", "--out", self.folder / "results"]):
+            quiet = vsb(command[0], self.write(GOOD), *command[1:])
+            self.assertEqual((quiet.returncode, quiet.stderr), (0, ""))
+            soft = vsb(command[0], self.write(GOOD), *command[1:], "--set", "body[0].material.youngs_modulus=9e3")
+            self.assertIn("warning: largest load / smallest Young's modulus = 1e+03 Pa / 9e+03 Pa = 0.11: check the units", soft.stderr)
+        heavy = vsb("check", self.write("gravity = [0.0, -10.0]\n" + GOOD), "--set", "body[0].material.youngs_modulus=1e5")
+        self.assertIn("= 4e+04 Pa / 1e+05 Pa = 0.4: check", heavy.stderr)  # 1000 kg/m^3 over the 4 m of the grid
+        bouncing = self.write(GOOD.replace("steps = 10", "until_static = {}"))
+        self.assertIn("method.damping = 0", vsb("check", bouncing).stderr)
+        self.assertEqual(vsb("check", bouncing, "--set", "method.damping=0.1").stderr, "")
 
     def test_overrides_reach_the_scene(self):
         done = vsb("check", SCENES / "column.toml", "--set", "time.dt=0.005", "--set", "grid.spacing=0.5",

@@ -102,6 +102,10 @@ class Polar(ProgramTest):
 dimension = 3
 [grid]
 polar = { center = [1.0, -2.0], radii = [1.0, 3.0], radial_cells = 4, angles = [-45.0, 90.0], angular_cells = 6, z = [0.0, 1.0, 3.0] }
+[faces]
+r_min = "fixed"
+theta_min = "fixed"
+theta_max = "fixed"
 [[body]]
 shape = { cylinder = { axis = "z", center = [1.0, -2.0, 0.0], radius = 2.5 } }
 particles_per_cell = [2, 3, 1]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The README is true: its commands run, its scene is a scene, its C++ is that of a program that is built and run."""
+import json
 import re
 import subprocess
 import unittest
@@ -8,7 +9,7 @@ from vsb_program import PROGRAM, ROOT, ProgramTest
 
 README = (ROOT / "README.md").read_text()
 # What this test runs inside of, and what configures the build that it is a part of.
-RUN_ELSEWHERE = ("./demo", "./check", "cmake --preset", "cmake --build")
+RUN_ELSEWHERE = ("./demo", "./check", "cmake --preset", "cmake --build", "cmake --install", "cmake -B")
 
 
 def blocks(language):
@@ -22,7 +23,7 @@ class Readme(ProgramTest):
         (self.folder / "build" / "openmp" / "apps" / "vsb").symlink_to(PROGRAM)
         scene = blocks("toml")
         self.assertEqual(len(scene), 1)
-        (self.folder / "notch.toml").write_text(scene[0])
+        (self.folder / "tunnel.toml").write_text(scene[0])
         ran = 0
         for block in blocks("sh"):
             for line in block.splitlines():
@@ -33,7 +34,24 @@ class Readme(ProgramTest):
                 self.assertEqual(done.returncode, 0, f"{command}\n{done.stdout}{done.stderr}")
                 ran += 1
         self.assertGreaterEqual(ran, 5)
-        self.assertTrue((self.folder / "results" / "notch" / "notch_fields.png").stat().st_size > 10_000)
+        results = self.folder / "results" / "tunnel"
+        self.assertTrue((results / "tunnel_fields.png").stat().st_size > 10_000)
+        # Only the tunnel is loaded: 20 kPa on a quarter of a circle of 1.5 m, pressure times radius in x and in y.
+        summary = json.loads((results / "summary.json").read_text())
+        told = [1e3 * float(kilo) for kilo in re.search(r"here \(([\d.]+), ([\d.]+)\) kN", README).groups()]
+        for component in (0, 1):
+            self.assertAlmostEqual(summary["exact_force"][component], 30e3, delta=1)
+            self.assertAlmostEqual(summary["net_force"][component], told[component], delta=50)
+
+    def test_examples_of_the_help_run_as_printed(self):
+        (self.folder / "apps").symlink_to(ROOT / "apps")
+        (self.folder / "vsb").symlink_to(PROGRAM)
+        text = subprocess.run([PROGRAM, "--help"], capture_output=True, text=True).stdout
+        commands = re.findall(r"^  ((?:vsb|/usr/bin/python3) .*?)   ", text, re.MULTILINE)
+        self.assertEqual(len(commands), 3)
+        for command in commands:
+            done = subprocess.run(f"PATH=.:$PATH {command}", shell=True, cwd=self.folder, capture_output=True, text=True, timeout=600)
+            self.assertEqual(done.returncode, 0, f"{command}\n{done.stdout}{done.stderr}")
 
     def test_demo_and_check_are_what_runs_elsewhere(self):
         for script in ("demo", "check", ".ci/run", "third_party/setup"):

@@ -97,6 +97,13 @@ class Frames(ProgramTest):
         self.assertAlmostEqual(summary["net_force"][0], -0.01, delta=1e-6)  # 100 of 10,000 ramp steps
         self.assertIn("steps = 100", summary["provenance"]["scene"])
 
+    def test_deviations_that_round_to_zero_have_no_sign(self):
+        run = lambda *more: vsb("run", SCENES / "column.toml", "--out", self.folder / "column", "--set", "time.steps=100", *more)
+        run()
+        e_u = json.loads((self.folder / "column" / "summary.json").read_text())["errors"]["e_u"]
+        for factor, text in ((1 + 1e-6, "(  +0.00 %)"), (1 - 1e-6, "(  +0.00 %)"), (1 + 1e-4, "(  -0.01 %)")):
+            self.assertIn(text, run("--set", f"published[0].e_u={e_u * factor!r}").stdout)
+
     def test_a_second_run_replaces_the_frames_of_the_first(self):
         self.run_scene("column", "--set", "time.steps=20", "--set", "output.every=5")
         self.run_scene("column", "--set", "time.steps=7")
@@ -112,7 +119,8 @@ class Ends(ProgramTest):
         run.stdout.readline()  # the head line: the run has begun
         time.sleep(0.5)
         run.send_signal(number)
-        run.communicate(timeout=60)
+        output, _ = run.communicate(timeout=60)
+        self.assertRegex(output, r"interrupted at step \d+; the same command with --resume")
         return run.returncode
 
     def test_interrupt_writes_a_checkpoint_and_resuming_changes_no_bit(self):
@@ -123,6 +131,7 @@ class Ends(ProgramTest):
             step = int(file["checkpoint"].attrs["step"][0])
         self.assertTrue(0 < step < 400000, step)
         resumed = self.run_scene("column", "--resume", "--set", "time.steps=400000")
+        self.assertFalse((out / "column.checkpoint").exists())  # there is nothing left to go on with
         whole = self.run_scene("column", "--set", "time.steps=400000", out="whole")
         self.assertEqual(resumed["steps"], whole["steps"])
         self.assertEqual(resumed["state_hash"], whole["state_hash"])
@@ -143,6 +152,33 @@ class Ends(ProgramTest):
         done = vsb("run", SCENES / "column.toml", "--out", out, "--resume", "--set", "time.steps=400000")
         self.assertEqual(done.returncode, 4)
         self.assertIn("column.checkpoint", done.stderr)
+
+    def test_a_checkpoint_is_not_discarded_without_a_word(self):
+        out = self.folder / "column"
+        again = lambda *more: vsb("run", SCENES / "column.toml", "--out", out, "--set", "time.steps=400000", *more)
+        first = vsb("run", SCENES / "column.toml", "--out", out, "--set", "time.steps=10", "--resume")
+        self.assertEqual((first.returncode, first.stderr), (0, f"vsb: no checkpoint in {out}; starting from step 0\n"))
+        self.assertEqual(self.interrupt(out, signal.SIGINT), 5)
+        with h5py.File(out / "column.checkpoint") as file:
+            step = int(file["checkpoint"].attrs["step"][0])
+        done = again("--quiet")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn(f"discarding the checkpoint of step {step} in {out} (with --resume", done.stderr)
+        self.assertEqual(again("--quiet").stderr, "")
+
+    def test_not_static_has_its_own_exit_code(self):
+        run = lambda *more: vsb("run", SCENES / "cylinder.toml", "--out", self.folder / "c", "--quiet", *more)
+        done = run("--set", "time.until_static.max_steps=100")
+        self.assertEqual(done.returncode, 7)
+        self.assertRegex(done.stderr, r"^vsb: not static after max_steps = 100 \(force ratio [\d.e+-]+, energy ratio [\d.e+-]+\)\n$")
+        self.assertFalse(json.loads((self.folder / "c" / "summary.json").read_text())["static"])
+        self.assertIn("7 not static", vsb("--help").stdout)
+
+    def test_divergence_by_a_modulus_in_the_wrong_unit_says_so(self):
+        done = vsb("run", SCENES / "cylinder.toml", "--out", self.folder / "c", "--quiet", "--set",
+                   "body[0].material.youngs_modulus=10", "--set", "traction[0].time.ramp=0")
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertRegex(done.stderr, r"diverged at step .*; largest load / smallest Young's modulus = 1e\+05 Pa / 10 Pa = 1e\+04: check")
 
     def test_divergence_names_step_particle_and_field(self):
         done = vsb("run", SCENES / "column.toml", "--out", self.folder / "column", "--set", "time.dt=0.06")

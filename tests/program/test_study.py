@@ -146,6 +146,7 @@ class Verdicts(StudyTest):
             title = "Coarse cylinders"
             scene = "SCENES/cylinder.toml"
             set = ["time.until_static.max_steps=100"]
+            expect_static = false
             rates = true
             axis = { name = "h", unit = "m", log = true }
             [[series]]
@@ -181,6 +182,26 @@ class Verdicts(StudyTest):
 
         _, table = self.study(text.replace("max_steps=100", "max_steps=1"), "--fine")
         self.assertEqual({row["case"] for row in table}, {"0.5", "0.25", "0.125"})
+
+
+    def test_a_case_that_is_not_static_fails_unless_expected(self):
+        text = """
+            title = "Too short"
+            scene = "SCENES/cylinder.toml"
+            set = ["grid.spacing=0.5", "time.until_static.max_steps=10"]
+            axis = { name = "variant", labels = true }
+            [[series]]
+            name = "s"
+            case = [{ label = "a", expect = { steps = { value = 10, tolerance = 0 } }%s }]
+            """
+        _, table = self.study(text % "", code=6)
+        self.assertEqual((self.line(table, "a", "outcome")["verdict"], self.line(table, "a", "steps")["verdict"]), ("fail", "pass"))
+        self.assertIn("not static after max_steps = 10", self.line(table, "a", "outcome")["note"])
+        _, table = self.study(text % ", expect_static = false")
+        self.assertEqual([row for row in table if row["figure"] == "outcome"], [])
+        expected = (text % ', expect_failure = "not static"').replace("expect = { steps = { value = 10, tolerance = 0 } }, ", "")
+        _, table = self.study(expected)
+        self.assertEqual([(row["figure"], row["verdict"]) for row in table], [("outcome", "pass")])
 
 
 class BadStudies(StudyTest):
@@ -306,8 +327,8 @@ class GoingOn(StudyTest):
         done, table = self.study(LONG)
         self.assertEqual(self.case(300, "summary.json").stat().st_mtime_ns, finished)
         self.assertEqual(done.stdout.count("done before"), 1)
-        # A run from the start would have removed the checkpoint, and timed more steps than there are.
-        self.assertTrue(self.case(100000, "column.checkpoint").is_file())
+        # A run from the start would have timed more steps than there are.
+        self.assertFalse(self.case(100000, "column.checkpoint").exists())
         self.assertEqual(tomllib.loads(self.case(100000, "case.toml").read_text())["steps_timed"], 100000)
 
         _, whole = self.study(LONG, out="whole")

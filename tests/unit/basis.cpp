@@ -30,7 +30,7 @@ TEST_CASE("nodes and cells are numbered along x first") {
 TEMPLATE_TEST_CASE_SIG("node numbers and node coordinates are inverse", "", ((int Dim), Dim), 1, 2, 3) {
   const auto grid = make_grid<Dim, double>();
   for (int node = 0; node < grid.node_count(); ++node) {
-    const auto ijk = grid.node_coordinates(node);
+    const auto ijk = grid.node_ijk(node);
     for (int i = 0; i < Dim; ++i) CHECK((ijk[i] >= 0 && ijk[i] <= grid.cells[i]));
     CHECK(grid.node_index(ijk) == node);
   }

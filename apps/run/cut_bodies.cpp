@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/cut_bodies.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "run/lattice_points.hpp"
+#include "run/simulation.hpp"
+#include "scene/units.hpp"
+
+namespace vsb::app {
+
+namespace {
+
+struct Face {
+  size_t axis, side;  ///< side 0: lower, 1: upper
+};
+
+/// The scene on a grid with one more cell at every open face.
+Scene with_a_cell_beyond(Scene scene) {
+  auto& grid = scene.grid;
+  for (size_t i = 0; i < static_cast<size_t>(scene.dimension); ++i) {
+    const bool below = scene.faces.fixed[i][0] == 0, above = scene.faces.fixed[i][1] == 0;
+    if (!grid.mapped()) {
+      if (below) grid.lower[i] -= grid.spacing[i];
+      grid.cells[i] += int(below) + int(above);
+      continue;
+    }
+    auto& nodes = grid.coordinates[i];
+    const double first = nodes[0] - (nodes[1] - nodes[0]), last = 2 * nodes.back() - nodes[nodes.size() - 2];
+    const bool radial = grid.polar && i == 0, around = grid.polar && i == 1;
+    const bool meets_itself = around && last - first > 2 * pi;
+    if (above && !meets_itself) nodes.push_back(last);
+    if (below && !meets_itself && !(radial && first <= 0)) nodes.insert(nodes.begin(), first);
+    if (!grid.polar) grid.lower[i] = nodes.front();
+    grid.cells[i] = static_cast<int>(nodes.size()) - 1;
+  }
+  return scene;
+}
+
+/// The face beyond which coordinates q along the logical axes lie; none inside the grid and beyond an edge of
+/// it.
+std::optional<Face> face_passed(const Scene& scene, const Point& q) {
+  std::optional<Face> passed;
+  for (size_t i = 0; i < static_cast<size_t>(scene.dimension); ++i) {
+    const auto [low, high] = extent(scene.grid, i);
+    const double round_off = 1e-9 * (high - low);
+    if (q[i] >= low - round_off && q[i] <= high + round_off) continue;
+    if (passed) return {};
+    passed = Face{i, q[i] > high ? size_t(1) : size_t(0)};
+  }
+  return passed;
+}
+
+/// Whether the body goes on, far beyond the face.
+bool endless(const Scene& scene, const BodySpec& body, Point q, const Face& face) {
+  if (scene.grid.polar && face.axis == 1) return false;
+  const auto [low, high] = extent(scene.grid, face.axis);
+  const double far = 1e6 * (high - low);
+  if (scene.grid.polar && face.axis == 0 && face.side == 0) return false;
+  q[face.axis] += face.side == 0 ? -far : far;
+  return body.region(place(scene.grid, q));
+}
+
+}  // namespace
+
+void refuse_cut_bodies(const Scene& scene) {
+  const Scene larger = with_a_cell_beyond(scene);
+  for (const auto& body : scene.bodies)
+    for_each_lattice_point(larger, body, [&](const LatticePoint& point) {
+      const Point q = logical_coordinates(scene.grid, point.x);
+      const auto face = face_passed(scene, q);
+      if (!face || scene.faces.fixed[face->axis][face->side] != 0 || !body.region(point.x) ||
+          endless(scene, body, q, *face))
+        return;
+      throw SetupError(fmt::format(
+          "body '{}' reaches out of the grid at the open face {}_{}, to ({:.6g}, {:.6g}, {:.6g}), and would "
+          "be cut off "
+          "there: make the grid larger or the body smaller, or, for a symmetry plane or a support, give the "
+          "face a condition",
+          body.name, scene.grid.axis_name(face->axis), face->side == 0 ? "min" : "max", point.x[0],
+          point.x[1], point.x[2]));
+    });
+}
+
+}  // namespace vsb::app

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// What looks like a mistake in a scene that can be run all the same.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/scene.hpp"
+
+namespace vsb::app {
+
+/// A sentence on the units where the loads strain the softest body by more than a tenth: most often a modulus
+/// in MPa or GPa where Pa is meant. Empty where they do not.
+std::string units_hint(const Scene& scene);
+
+/// All of a scene's oddities, a sentence each.
+std::vector<std::string> scene_advice(const Scene& scene);
+
+}  // namespace vsb::app
