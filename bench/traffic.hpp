@@ -66,8 +66,8 @@ double state_bytes(const Scene<Dim, Real>& scene) {
                bytes(n.remapped_velocity) + bytes(n.fixed_components) + bytes(bins.bin) + bytes(bins.order) +
                bytes(bins.offset) + bytes(bins.cursor) + bytes(bins.slot) + bytes(bins.occupied) +
                bytes(cells.occupied) + bytes(cells.exterior) + bytes(cells.boundary) +
-               bytes(s.occupancy.tractions) + bytes(s.occupancy.boundary) + bytes(s.sums_workspace.particles.bin_sums) +
-               bytes(s.remap_workspace.bin_sums);
+               bytes(s.occupancy.tractions) + bytes(s.occupancy.boundary) +
+               bytes(s.sums_workspace.particles.bin_sums) + bytes(s.remap_workspace.bin_sums);
   if (scene.options.scatter == Scatter::duplicated)
     sum += Exec().concurrency() * (bytes(n.sums) + bytes(n.remapped_velocity));
   return sum / s.particles.count();

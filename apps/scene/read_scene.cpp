@@ -379,12 +379,15 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
     scene.bodies.push_back(read_body(table, scene.grid, scene.dimension, scene.bodies.size()));
   if (scene.bodies.empty()) r.missing("body", "at least one table [[body]]");
   std::vector<TimeShape> time_shapes;
+  int exact_fields = 0;  // the kernels take one
   for (auto& table : r.tables("traction")) {
     if (scene.tractions.size() == max_tractions)
       r.fail(*document.get("traction"), "traction", fmt::format("at most {} tractions", max_tractions));
     time_shapes.emplace_back();
     scene.tractions.push_back(
         read_traction(table, scene.dimension, scene.tractions.size(), time_shapes.back()));
+    if (scene.tractions.back().exact && exact_fields++ > 0)
+      table.fail(*table.source().get("exact_ellipse"), "exact_ellipse", "at most one traction may have it");
   }
   scene.method = read_method(r.table("method"));
   if (!r.has("time")) r.missing("time", "a table with dt or kappa, and steps or until_static");

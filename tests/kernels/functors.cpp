@@ -200,7 +200,8 @@ TEST_CASE("LocateParticle") {
   for (int p = 0; p < 4; ++p) particles.position(p, 0) = places[p];
   const ParticleBins<Host>::Ints bin("vsb::bin", 4);
   Kokkos::deep_copy(bin, 3);
-  const kernel::LocateParticle<LinearBasis<1, double>, Particles<1, double, Host>, Host> functor{particles, basis, bin};
+  const kernel::LocateParticle<LinearBasis<1, double>, Particles<1, double, Host>, Host> functor{particles,
+                                                                                                 basis, bin};
   const auto found = [&](int p) {
     int minimum = 1;
     functor(p, minimum);

@@ -180,7 +180,8 @@ TEMPLATE_TEST_CASE_SIG("patch test on a distorted grid: a stress equal to the vi
     REQUIRE(update_occupancy(Exec(), state.particles, state.occupancy, basis) == -1);
     Kokkos::deep_copy(state.occupancy.boundary, 1u);
     particles_to_grid(Exec(), state.particles, state.occupancy.bins, state.nodes, state.occupancy.boundary,
-                      state.sums_workspace.particles, basis, field, Vector<Dim, double>::zero(), Scatter::gathered);
+                      state.sums_workspace.particles, basis, field, Vector<Dim, double>::zero(),
+                      Scatter::gathered);
     return read(state.nodes.sums);
   };
   const auto balanced = sums_with(1), twice = sums_with(2);

@@ -124,6 +124,11 @@ class Ellipse(ProgramTest):
         done = vsb("check", SCENES / "ellipse-exact.toml", "--set", "traction[1].pressure=1.0")
         self.assertEqual(done.returncode, 2)
         self.assertIn("one of pressure, stress and exact_ellipse", done.stderr)
+        text = (SCENES / "ellipse-exact.toml").read_text()
+        exact = re.search(r"^exact_ellipse = .*$", text, re.MULTILINE).group()
+        done = vsb("check", self.write(text.replace("pressure = 12.5e3\nsurface", exact + "\nsurface")))
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("at most one traction may have it", done.stderr)
         done = vsb("check", SCENES / "column.toml", "--set", "traction[0].exact_ellipse={semi_major=2}")
         self.assertEqual(done.returncode, 2)
 
