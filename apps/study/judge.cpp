@@ -77,6 +77,43 @@ std::vector<StudyLine> judge_case(const Study& study, const StudySeries& series,
   return lines;
 }
 
+std::vector<StudyLine> reach_lines(const Reach& reach, const std::vector<const CaseRecord*>& records) {
+  struct Case {
+    double cost, error;
+  };
+  std::vector<StudyLine> lines;
+  for (const auto& figure : reach.figures)
+    for (const bool in_seconds : {true, false}) {
+      StudyLine line;
+      line.figure =
+          fmt::format("{} to {} = {:g}", in_seconds ? "seconds" : "particle-steps", figure, reach.level);
+      std::vector<Case> points;
+      for (const auto* record : records) {
+        const auto error = record->figure(figure);
+        const double cost = in_seconds ? record->total_seconds() : record->particle_steps();
+        if (error && *error > 0 && cost > 0) points.push_back({cost, *error});
+      }
+      std::sort(points.begin(), points.end(), [](const Case& a, const Case& b) { return a.cost < b.cost; });
+      const auto enough =
+          std::find_if(points.begin(), points.end(), [&](const Case& p) { return p.error <= reach.level; });
+      if (points.size() < 2) {
+        line.note = "needs two cases at least";
+      } else if (enough == points.begin()) {
+        line.value = enough->cost;
+        line.note = "at most: the cheapest case is better already";
+      } else {
+        const auto after = enough == points.end() ? enough - 1 : enough;
+        const auto before = after - 1;
+        const double slope = std::log(after->cost / before->cost) / std::log(before->error / after->error);
+        if (after->error < before->error)
+          line.value = before->cost * std::pow(before->error / reach.level, slope);
+        line.note = !line.value ? "does not fall" : enough == points.end() ? "extrapolated" : "";
+      }
+      lines.push_back(line);
+    }
+  return lines;
+}
+
 StudyLine judge_relation(const Study& study, const Relation& relation, const CaseRecord& first,
                          const CaseRecord& second) {
   StudyLine line;

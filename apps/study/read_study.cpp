@@ -135,7 +135,8 @@ class StudyReader {
     ResolvedTable resolved;
     TableReader r(document, "", resolved);
     study_.name = fs::path(path_).stem().string();
-    r.allow_only(with_inherited({"title", "published_source", "rates", "axis", "series", "relation"}));
+    r.allow_only(
+        with_inherited({"title", "published_source", "rates", "axis", "series", "relation", "reach"}));
     study_.title = r.text("title");
     study_.published_source = r.text("published_source", "published");
     study_.rates = r.boolean("rates", false);
@@ -145,6 +146,7 @@ class StudyReader {
     if (series.empty()) r.missing("series", "at least one table [[series]]");
     for (auto& table : series) read_series(table, inherited);
     for (auto& table : r.tables("relation")) read_relation(table, inherited);
+    if (r.has("reach")) read_reach(r.table("reach"));
     r.finish();
     leave_out_fine_cases();
     return std::move(study_);
@@ -301,6 +303,21 @@ class StudyReader {
       r.fail(*r.source().get("rate"), "rate", "rates need a logarithmic axis (axis.log = true)");
     r.finish();
     study_.relations.push_back(std::move(relation));
+  }
+
+  void read_reach(TableReader r) {
+    std::vector<std::string> known;
+    for (const auto& series : study_.series)
+      for (const auto& c : series.cases)
+        if (c.scene)
+          for (const auto& name : error_names(c.scene->compare))
+            if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
+    Reach reach;
+    r.allow_only({"figures", "level"});
+    reach.figures = r.texts("figures", known);
+    reach.level = r.number("level", Range::positive());
+    r.finish();
+    study_.reach = reach;
   }
 
   /// Takes out what only --fine runs. Relations keep their places, so their cases move first.

@@ -102,6 +102,7 @@ class StudyRun {
       if (interrupt_requested()) return interrupted();
     }
     judge_relations();
+    add_reach();
     write_study_files(options_.directory, study_, rows_);
     const std::string table = options_.directory + "/" + study_.name + ".csv";
     say("table {}\n", table);
@@ -212,6 +213,18 @@ class StudyRun {
       rows_.push_back(
           {"relation", relation.title, "", {}, {judge_relation(study_, relation, first, second)}});
       say("{}\n", relation.title);
+      print_lines(rows_.back());
+    }
+  }
+
+  void add_reach() {
+    if (!study_.reach) return;
+    for (size_t s = 0; s < study_.series.size(); ++s) {
+      std::vector<const CaseRecord*> records;
+      for (const auto& task : tasks_)
+        if (task.series == s) records.push_back(&*task.record);
+      rows_.push_back({"reach", study_.series[s].name, "", {}, reach_lines(*study_.reach, records)});
+      say("{}\n", study_.series[s].name);
       print_lines(rows_.back());
     }
   }

@@ -59,12 +59,19 @@ struct Relation {
   Expectation expectation;
 };
 
+/// What every series needs for its errors to fall to a level.
+struct Reach {
+  std::vector<std::string> figures;
+  double level = 0;
+};
+
 struct Study {
   std::string name, title, published_source;
   StudyAxis axis;
   bool rates = false;
   std::vector<StudySeries> series;
   std::vector<Relation> relations;
+  std::optional<Reach> reach;
 };
 
 }  // namespace vsb::app
