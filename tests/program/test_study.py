@@ -297,8 +297,8 @@ class BadStudies(StudyTest):
                 self.assertEqual(line["note"], "" if name == "between" else "extrapolated")
             else:
                 self.assertTrue(line["note"])
-        self.refuse(GOOD + "[reach]\nfigures = [\"e_u\"]\nlevel = 0\n", "level", line=24)
-        self.refuse(GOOD + "[reach]\nfigures = [\"e_v\"]\nlevel = 1\n", "e_v", line=23)
+        self.refuse(GOOD + "[reach]\nfigures = [\"e_u\"]\nlevel = 0\n", "level", line=25)
+        self.refuse(GOOD + "[reach]\nfigures = [\"e_v\"]\nlevel = 1\n", "e_v", line=24)
 
     def test_unknown_studies(self):
         done = vsb("study", "colum", "--out", self.folder / "out")
