@@ -203,6 +203,40 @@ class Verdicts(StudyTest):
         _, table = self.study(expected)
         self.assertEqual([(row["figure"], row["verdict"]) for row in table], [("outcome", "pass")])
 
+    def test_reach(self):
+        """The cost of a level of error: between the cases a power law through both, beyond them extrapolated."""
+        text = """
+            title = "Coarse cylinders"
+            scene = "SCENES/cylinder.toml"
+            set = ["time.until_static.max_steps=100"]
+            expect_static = false
+            axis = { name = "h", unit = "m", log = true }
+            [[series]]
+            name = "uniform"
+            sweep = "grid.spacing"
+            case = [{ axis = 0.5 }, { axis = 0.25 }]
+            """
+        _, table = self.study(text)
+        coarse, fine = ({"error": float(self.line(table, case, "e_u")["value"]),
+                         "cost": float(self.line(table, case, "e_u")["particle_steps"])} for case in ("0.5", "0.25"))
+        self.assertNotEqual(coarse["error"], fine["error"])
+        better, worse = sorted((coarse["error"], fine["error"]))
+        levels = {"between": math.sqrt(better * worse), "beyond": better / 1.01, "less": 1.01 * worse}
+        for name, level in levels.items():
+            _, table = self.study(text + f"[reach]\nfigures = [\"e_u\"]\nlevel = {level!r}\n", out=name)
+            line, = (row for row in table if row["series"] == "reach" and row["figure"].startswith("particle-steps to e_u"))
+            self.assertEqual(line["case"], "uniform")
+            if name == "less":
+                self.assertEqual(float(line["value"]), coarse["cost"])
+                self.assertIn("at most", line["note"])
+            elif fine["error"] < coarse["error"]:
+                power = math.log(fine["cost"] / coarse["cost"]) / math.log(fine["error"] / coarse["error"])
+                self.assertAlmostEqual(float(line["value"]), coarse["cost"] * (level / coarse["error"]) ** power,
+                                       delta=1e-9 * coarse["cost"])
+                self.assertEqual(line["note"], "" if name == "between" else "extrapolated")
+            else:
+                self.assertTrue(line["note"])
+
 
 class BadStudies(StudyTest):
     def refuse(self, text, *words, line=None):
@@ -264,39 +298,7 @@ class BadStudies(StudyTest):
                                      ("ratio = { lowest = 0 }", "", "exactly one of ratio, difference and rate", 23)):
             self.refuse(GOOD + relation.replace(old, new), word, line=line)
 
-    def test_reach(self):
-        """The cost of a level of error: between the cases a power law through both, beyond them extrapolated."""
-        text = """
-            title = "Coarse cylinders"
-            scene = "SCENES/cylinder.toml"
-            set = ["time.until_static.max_steps=100"]
-            expect_static = false
-            axis = { name = "h", unit = "m", log = true }
-            [[series]]
-            name = "uniform"
-            sweep = "grid.spacing"
-            case = [{ axis = 0.5 }, { axis = 0.25 }]
-            """
-        _, table = self.study(text)
-        coarse, fine = ({"error": float(self.line(table, case, "e_u")["value"]),
-                         "cost": float(self.line(table, case, "e_u")["particle_steps"])} for case in ("0.5", "0.25"))
-        self.assertNotEqual(coarse["error"], fine["error"])
-        better, worse = sorted((coarse["error"], fine["error"]))
-        levels = {"between": math.sqrt(better * worse), "beyond": better / 1.01, "less": 1.01 * worse}
-        for name, level in levels.items():
-            _, table = self.study(text + f"[reach]\nfigures = [\"e_u\"]\nlevel = {level!r}\n", out=name)
-            line, = (row for row in table if row["series"] == "reach" and row["figure"].startswith("particle-steps to e_u"))
-            self.assertEqual(line["case"], "uniform")
-            if name == "less":
-                self.assertEqual(float(line["value"]), coarse["cost"])
-                self.assertIn("at most", line["note"])
-            elif fine["error"] < coarse["error"]:
-                power = math.log(fine["cost"] / coarse["cost"]) / math.log(fine["error"] / coarse["error"])
-                self.assertAlmostEqual(float(line["value"]), coarse["cost"] * (level / coarse["error"]) ** power,
-                                       delta=1e-9 * coarse["cost"])
-                self.assertEqual(line["note"], "" if name == "between" else "extrapolated")
-            else:
-                self.assertTrue(line["note"])
+    def test_bad_reach(self):
         self.refuse(GOOD + "[reach]\nfigures = [\"e_u\"]\nlevel = 0\n", "level", line=25)
         self.refuse(GOOD + "[reach]\nfigures = [\"e_v\"]\nlevel = 1\n", "e_v", line=24)
 
