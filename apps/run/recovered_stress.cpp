@@ -8,6 +8,7 @@
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>
 
+#include <algorithm>
 #include <cmath>
 
 #include "run/host_basis.hpp"
@@ -35,33 +36,45 @@ class Projection {
         row_(static_cast<size_t>(basis.node_count()), -1) {
     number_nodes();
     assemble();
-    solver_.setTolerance(1e-14);
-    solver_.setMaxIterations(100 * scale_.size() + 1000);
+    solver_.setMaxIterations(2 * scale_.size() + 1000);
     solver_.compute(matrix_);
   }
 
-  /// Component c of the stress at the particles, written to `to` (6 per particle).
-  void project(size_t c, std::vector<double>& to) const {
-    Vector right = Vector::Zero(scale_.size()), weight = right;
+  /// Component c of the stress at the particles, added to `to` (6 per particle).
+  ///
+  /// Solved once, then again for what is left at the particles, which brings back the digits that forming M
+  /// loses where slivers lie among full particles.
+  void project(size_t c, std::vector<double>& to) {
+    const double all = add_solution(c, to, 0);
+    if (all == 0) return;
+    for (int pass = 0; pass < 3; ++pass)
+      if (add_solution(c, to, all) <= round_off * all) break;
+  }
+
+ private:
+  static constexpr int support = Basis::support;
+  static constexpr double round_off = 1e-15;
+
+  /// Adds the projection of what the particles' stress has beyond `to`; `all` is the norm of the right-hand
+  /// side of the stress itself, 0 for the first call. Returns the norm of the right-hand side.
+  double add_solution(size_t c, std::vector<double>& to, double all) {
+    Vector right = Vector::Zero(scale_.size());
     for_each_value([&](size_t p, int row, double N) {
-      right[row] += s_.volume[p] * N * s_.cauchy_stress[6 * p + c];
-      weight[row] += s_.volume[p] * N;
+      right[row] += s_.volume[p] * N * (s_.cauchy_stress[6 * p + c] - to[6 * p + c]);
     });
-    if (right.isZero(0)) return;
-    // Begin with the weighted means at the nodes: uniform fields are found at once.
-    const Vector guess = right.cwiseQuotient(weight).cwiseQuotient(scale_);
     right = right.cwiseProduct(scale_);
-    const Vector values = solver_.solveWithGuess(right, guess).cwiseProduct(scale_);
-    if (!(solver_.error() < 1e-10))
+    const double norm = right.norm();
+    if (norm <= round_off * all) return norm;
+    solver_.setTolerance(all == 0 ? 1e-12 : std::max(1e-4, 0.1 * round_off * all / norm));
+    const Vector values = solver_.solve(right).cwiseProduct(scale_);
+    if (all == 0 && !(solver_.error() < 1e-10))
       throw Diverged(
           fmt::format("in the recovery of the stress at time {:.6g} s: the projection was not found "
                       "(relative residual {:.2e} after {} iterations)",
                       s_.time, solver_.error(), solver_.iterations()));
     for_each_value([&](size_t p, int row, double N) { to[6 * p + c] += N * values[row]; });
+    return norm;
   }
-
- private:
-  static constexpr int support = Basis::support;
 
   /// Calls work(p, row, N) for every particle and node that it reaches.
   template <class Work>
@@ -130,7 +143,7 @@ void recover_stress(const Scene& scene, Snapshot& snapshot) {
   std::vector<double> recovered(snapshot.cauchy_stress.size(), 0.0);
   with_host_basis(scene, [&](const auto& basis) {
     for (const auto& body : snapshot.bodies) {
-      const Projection projection(basis, snapshot, body);
+      Projection projection(basis, snapshot, body);
       for (size_t c = 0; c < 6; ++c) projection.project(c, recovered);
     }
   });
