@@ -18,12 +18,12 @@ using ExecutionSpace = Kokkos::OpenMP;
 using ExecutionSpace = Kokkos::Serial;
 #endif
 
-/// A basis together with what it points to.
-template <class Basis>
+/// A basis together with what it points to, in the memory of the backend or of another device.
+template <class Basis, class Device = ExecutionSpace::device_type>
 struct OwnedBasis;
 
-template <int Dim, class Real>
-struct OwnedBasis<LinearBasis<Dim, Real>> {
+template <int Dim, class Real, class Device>
+struct OwnedBasis<LinearBasis<Dim, Real>, Device> {
   LinearBasis<Dim, Real> basis;
 
   explicit OwnedBasis(const GridSpec& spec) {
@@ -40,9 +40,9 @@ struct OwnedBasis<LinearBasis<Dim, Real>> {
   size_t bytes() const { return 0; }
 };
 
-template <int Dim, class Real>
-struct OwnedBasis<MappedLinearBasis<Dim, Real>> {
-  MappedMesh<Dim, Real, ExecutionSpace::device_type> mesh;
+template <int Dim, class Real, class Device>
+struct OwnedBasis<MappedLinearBasis<Dim, Real>, Device> {
+  MappedMesh<Dim, Real, Device> mesh;
   MappedLinearBasis<Dim, Real> basis;
 
   explicit OwnedBasis(const GridSpec& spec) : mesh(make_mesh(spec)), basis{mesh.grid} {}
@@ -54,7 +54,7 @@ struct OwnedBasis<MappedLinearBasis<Dim, Real>> {
   static auto make_mesh(const GridSpec& spec) {
     Vector<Dim, int> cells;
     for (int i = 0; i < Dim; ++i) cells[i] = spec.cells[static_cast<size_t>(i)];
-    return make_mapped_mesh<Real, ExecutionSpace::device_type>(cells, [&](const Vector<Dim, int>& ijk) {
+    return make_mapped_mesh<Real, Device>(cells, [&](const Vector<Dim, int>& ijk) {
       std::array<int, 3> logical{};
       for (int i = 0; i < Dim; ++i) logical[static_cast<size_t>(i)] = ijk[i];
       const Point place = node_position(spec, Dim, logical);

@@ -2,10 +2,12 @@
 #include "run/comparison.hpp"
 
 #include <cmath>
+#include <map>
 #include <vsb/physics/exact_column.hpp>
 #include <vsb/physics/exact_cylinder.hpp>
 #include <vsb/physics/exact_ellipse.hpp>
 #include <vsb/physics/linear_elastic.hpp>
+#include "run/cell_means.hpp"
 
 namespace vsb::app {
 
@@ -24,37 +26,23 @@ class Norm {
   double sum_ = 0, weight_ = 0;
 };
 
-/// Eqs. (30), (31): particles count alike, lengths over L0, stresses over the traction. e_u is against (A1)
-/// as printed, as in Table 2; e_u_exact against the solution that the paper's own volumes imply.
-ComparisonResult compare(const ColumnComparison& c, const Scene& scene, const Snapshot& s) {
-  const auto& m = scene.bodies.front().material;
-  const auto elastic = LinearElastic<double>::from_young(m.youngs_modulus, m.poisson_ratio);
-  const ExactColumn<double> solution{c.traction, elastic.constrained_modulus()};
-  Norm printed, exact, stress;
-  ComparisonResult result;
-  result.exact.displacement.assign(3 * s.count(), 0.0);
-  result.exact.cauchy_stress.assign(6 * s.count(), 0.0);
-  for (size_t p = 0; p < s.count(); ++p) {
-    const double x0 = s.initial_position[3 * p] - scene.grid.lower[0];
-    const double u = s.position[3 * p] - s.initial_position[3 * p];
-    printed.add((solution.displacement_as_printed(x0) - u) / c.length, 1);
-    exact.add((solution.displacement(x0) - u) / c.length, 1);
-    stress.add((solution.stress() - s.cauchy_stress[6 * p]) / c.traction, 1);
-    result.exact.displacement[3 * p] = solution.displacement(x0);
-    result.exact.cauchy_stress[6 * p] = solution.stress();
-  }
-  result.errors = {{"e_u", printed.value()}, {"e_u_exact", exact.value()}, {"e_sigma", stress.value()}};
-  return result;
-}
+using Errors = std::vector<std::pair<std::string, double>>;
+
+/// Stresses at places, each with its weight in a norm.
+struct Samples {
+  const std::vector<double>& position;       ///< [3 per sample], m
+  const std::vector<double>& cauchy_stress;  ///< [6 per sample], Pa
+  const std::vector<double>& weight;         ///< [1 per sample]
+};
 
 Vector<2, double> in_plane(const std::vector<double>& vectors, size_t p) {
   return {{vectors[3 * p], vectors[3 * p + 1]}};
 }
 
 /// Components xx, yy, zz, xy.
-SymmetricTensor<2, double> in_plane_stress(const Snapshot& s, size_t p) {
+SymmetricTensor<2, double> in_plane_stress(const std::vector<double>& stresses, size_t p) {
   SymmetricTensor<2, double> stress;
-  for (size_t c = 0; c < 4; ++c) stress[static_cast<int>(c)] = s.cauchy_stress[6 * p + c];
+  for (size_t c = 0; c < 4; ++c) stress[static_cast<int>(c)] = stresses[6 * p + c];
   return stress;
 }
 
@@ -62,55 +50,142 @@ void store(const SymmetricTensor<2, double>& stress, std::vector<double>& to, si
   for (size_t c = 0; c < 4; ++c) to[6 * p + c] = stress[static_cast<int>(c)];
 }
 
-/// Eqs. (32), (33): particles count by volume, lengths over a, stresses over p_i; at current positions. e_u
-/// is of the radial displacement.
-ComparisonResult compare(const CylinderComparison& c, const Scene& scene, const Snapshot& s) {
+ExactColumn<double> solution_of(const ColumnComparison& c, const Scene& scene) {
   const auto& m = scene.bodies.front().material;
-  const ExactCylinder<double> solution{c.inner_radius, c.outer_radius, c.pressure, m.youngs_modulus,
-                                       m.poisson_ratio};
-  Norm rr, tt, u;
-  ComparisonResult result;
-  result.exact.displacement.assign(3 * s.count(), 0.0);
-  result.exact.cauchy_stress.assign(6 * s.count(), 0.0);
+  const auto elastic = LinearElastic<double>::from_young(m.youngs_modulus, m.poisson_ratio);
+  return {c.traction, elastic.constrained_modulus()};
+}
+ExactCylinder<double> solution_of(const CylinderComparison& c, const Scene& scene) {
+  const auto& m = scene.bodies.front().material;
+  return {c.inner_radius, c.outer_radius, c.pressure, m.youngs_modulus, m.poisson_ratio};
+}
+ExactEllipse<double> solution_of(const EllipseComparison& c, const Scene& scene) {
+  return {c.semi_major, c.semi_minor, c.pressure,
+          c.far_stress, c.far_ratio,  scene.bodies.front().material.poisson_ratio};
+}
+
+/// Eqs. (31), (33): stresses over the traction or the pressure.
+Errors stress_errors(const ColumnComparison& c, const Scene& scene, const Samples& s) {
+  const auto solution = solution_of(c, scene);
+  Norm stress;
+  for (size_t p = 0; p < s.weight.size(); ++p)
+    stress.add((solution.stress() - s.cauchy_stress[6 * p]) / c.traction, s.weight[p]);
+  return {{"e_sigma", stress.value()}};
+}
+Errors stress_errors(const CylinderComparison& c, const Scene& scene, const Samples& s) {
+  const auto solution = solution_of(c, scene);
+  Norm rr, tt;
+  for (size_t p = 0; p < s.weight.size(); ++p) {
+    const auto x = in_plane(s.position, p);
+    const auto exact = solution.stress(std::sqrt(dot(x, x)));
+    const auto ours = to_polar(in_plane_stress(s.cauchy_stress, p), x[0], x[1]);
+    rr.add((exact.rr - ours.rr) / c.pressure, s.weight[p]);
+    tt.add((exact.tt - ours.tt) / c.pressure, s.weight[p]);
+  }
+  return {{"e_rr", rr.value()}, {"e_tt", tt.value()}};
+}
+Errors stress_errors(const EllipseComparison& c, const Scene& scene, const Samples& s) {
+  const auto solution = solution_of(c, scene);
+  Norm xx, yy, xy;
+  for (size_t p = 0; p < s.weight.size(); ++p) {
+    const auto exact = solution.stress(in_plane(s.position, p));
+    const auto difference = exact - in_plane_stress(s.cauchy_stress, p);
+    xx.add(difference(0, 0) / c.pressure, s.weight[p]);
+    yy.add(difference(1, 1) / c.pressure, s.weight[p]);
+    xy.add(difference(0, 1) / c.pressure, s.weight[p]);
+  }
+  return {{"e_xx", xx.value()}, {"e_yy", yy.value()}, {"e_xy", xy.value()}};
+}
+
+/// Eq. (30): particles count alike, lengths over L0. e_u is against (A1) as printed, as in Table 2; e_u_exact
+/// against the solution that the paper's own volumes imply.
+Errors displacement_errors(const ColumnComparison& c, const Scene& scene, const Snapshot& s) {
+  const auto solution = solution_of(c, scene);
+  Norm printed, exact;
+  for (size_t p = 0; p < s.count(); ++p) {
+    const double x0 = s.initial_position[3 * p] - scene.grid.lower[0];
+    const double u = s.position[3 * p] - s.initial_position[3 * p];
+    printed.add((solution.displacement_as_printed(x0) - u) / c.length, 1);
+    exact.add((solution.displacement(x0) - u) / c.length, 1);
+  }
+  return {{"e_u", printed.value()}, {"e_u_exact", exact.value()}};
+}
+/// Eq. (32) for the radial displacement: particles count by volume, lengths over a; at current positions.
+Errors displacement_errors(const CylinderComparison& c, const Scene& scene, const Snapshot& s) {
+  const auto solution = solution_of(c, scene);
+  Norm u;
   for (size_t p = 0; p < s.count(); ++p) {
     const auto x = in_plane(s.position, p), x0 = in_plane(s.initial_position, p);
-    const double r = std::sqrt(dot(x, x)), V = s.volume[p];
-    const auto exact = solution.stress(r);
-    const auto ours = to_polar(in_plane_stress(s, p), x[0], x[1]);
-    rr.add((exact.rr - ours.rr) / c.pressure, V);
-    tt.add((exact.tt - ours.tt) / c.pressure, V);
-    u.add((solution.radial_displacement(r) - dot(x - x0, x) / r) / c.inner_radius, V);
-    for (size_t i = 0; i < 2; ++i)
-      result.exact.displacement[3 * p + i] = solution.radial_displacement(r) * x[static_cast<int>(i)] / r;
-    auto cartesian = from_polar<2>(exact, x[0], x[1]);
-    cartesian[2] = m.poisson_ratio * (exact.rr + exact.tt);
-    store(cartesian, result.exact.cauchy_stress, p);
+    const double r = std::sqrt(dot(x, x));
+    u.add((solution.radial_displacement(r) - dot(x - x0, x) / r) / c.inner_radius, s.volume[p]);
   }
-  result.errors = {{"e_rr", rr.value()}, {"e_tt", tt.value()}, {"e_u", u.value()}};
-  return result;
+  return {{"e_u", u.value()}};
 }
 
-/// Eq. (33) for the Cartesian components.
-ComparisonResult compare(const EllipseComparison& c, const Scene& scene, const Snapshot& s) {
-  const ExactEllipse<double> solution{c.semi_major, c.semi_minor,
-                                      c.pressure,   c.far_stress,
-                                      c.far_ratio,  scene.bodies.front().material.poisson_ratio};
-  Norm xx, yy, xy;
-  ComparisonResult result;
-  result.exact.cauchy_stress.assign(6 * s.count(), 0.0);
+Errors displacement_errors(const EllipseComparison&, const Scene&, const Snapshot&) {
+  return {};
+}
+
+ExactFields exact_fields(const ColumnComparison& c, const Scene& scene, const Snapshot& s) {
+  const auto solution = solution_of(c, scene);
+  ExactFields exact{std::vector<double>(3 * s.count()), std::vector<double>(6 * s.count())};
   for (size_t p = 0; p < s.count(); ++p) {
-    const auto exact = solution.stress(in_plane(s.position, p));
-    const auto difference = exact - in_plane_stress(s, p);
-    const double V = s.volume[p];
-    xx.add(difference(0, 0) / c.pressure, V);
-    yy.add(difference(1, 1) / c.pressure, V);
-    xy.add(difference(0, 1) / c.pressure, V);
-    store(exact, result.exact.cauchy_stress, p);
+    exact.displacement[3 * p] = solution.displacement(s.initial_position[3 * p] - scene.grid.lower[0]);
+    exact.cauchy_stress[6 * p] = solution.stress();
   }
-  result.errors = {{"e_xx", xx.value()}, {"e_yy", yy.value()}, {"e_xy", xy.value()}};
-  return result;
+  return exact;
+}
+ExactFields exact_fields(const CylinderComparison& c, const Scene& scene, const Snapshot& s) {
+  const auto solution = solution_of(c, scene);
+  ExactFields exact{std::vector<double>(3 * s.count()), std::vector<double>(6 * s.count())};
+  for (size_t p = 0; p < s.count(); ++p) {
+    const auto x = in_plane(s.position, p);
+    const double r = std::sqrt(dot(x, x));
+    for (size_t i = 0; i < 2; ++i)
+      exact.displacement[3 * p + i] = solution.radial_displacement(r) * x[static_cast<int>(i)] / r;
+    const auto polar = solution.stress(r);
+    auto cartesian = from_polar<2>(polar, x[0], x[1]);
+    cartesian[2] = scene.bodies.front().material.poisson_ratio * (polar.rr + polar.tt);
+    store(cartesian, exact.cauchy_stress, p);
+  }
+  return exact;
+}
+ExactFields exact_fields(const EllipseComparison& c, const Scene& scene, const Snapshot& s) {
+  const auto solution = solution_of(c, scene);
+  ExactFields exact{{}, std::vector<double>(6 * s.count())};
+  for (size_t p = 0; p < s.count(); ++p)
+    store(solution.stress(in_plane(s.position, p)), exact.cauchy_stress, p);
+  return exact;
 }
 
+/// The weights of particles in norms of the stress.
+std::vector<double> weights(const ColumnComparison&, const Snapshot& s) {
+  return std::vector<double>(s.count(), 1);
+}
+template <class InThePlane>
+std::vector<double> weights(const InThePlane&, const Snapshot& s) {
+  return s.volume;
+}
+
+template <class Solution>
+ComparisonResult compare(const Solution& c, const Scene& scene, const Snapshot& s) {
+  std::map<std::string, double> errors;
+  const auto add = [&](const Errors& more, const char* suffix) {
+    for (const auto& [name, value] : more) errors[name + suffix] = value;
+  };
+  add(displacement_errors(c, scene, s), "");
+  const auto weight = weights(c, s);
+  add(stress_errors(c, scene, {s.position, s.cauchy_stress, weight}), "");
+  if (scene.more_norms.recovered)
+    add(stress_errors(c, scene, {s.position, s.recovered_stress, weight}), "_recovered");
+  if (scene.more_norms.cell_means) {
+    const CellMeans means = cell_means(scene, s);
+    add(stress_errors(c, scene, {means.position, means.cauchy_stress, means.volume}), "_cell_mean");
+  }
+  ComparisonResult result{{}, exact_fields(c, scene, s)};
+  for (const auto& name : error_names(scene)) result.errors.emplace_back(name, errors.at(name));
+  return result;
+}
 ComparisonResult compare(const std::monostate&, const Scene&, const Snapshot&) {
   return {};
 }

@@ -25,6 +25,7 @@ struct ComparisonResult {
 };
 
 /// Evaluates the scene's comparison at the particles' current positions (the column's at their initial ones).
+/// The norms of the recovered stress, where the scene asks for them, need snapshot.recovered_stress.
 ComparisonResult compare_with_exact(const Scene& scene, const Snapshot& snapshot);
 
 }  // namespace vsb::app

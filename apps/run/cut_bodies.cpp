@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "run/cut_lattice.hpp"
 #include "run/lattice_points.hpp"
 #include "run/simulation.hpp"
 #include "scene/units.hpp"
@@ -65,25 +66,55 @@ bool endless(const Scene& scene, const BodySpec& body, Point q, const Face& face
   return body.region(place(scene.grid, q));
 }
 
+[[noreturn]] void throw_cut_off(const Scene& scene, const BodySpec& body, const Face& face, const Point& x) {
+  throw SetupError(fmt::format(
+      "body '{}' reaches out of the grid at the open face {}_{}, to ({:.6g}, {:.6g}, {:.6g}), and would "
+      "be cut off "
+      "there: make the grid larger or the body smaller, or, for a symmetry plane or a support, give the "
+      "face a condition",
+      body.name, scene.grid.axis_name(face.axis), face.side == 0 ? "min" : "max", x[0], x[1], x[2]));
+}
+
+/// Of a cut lattice every share beyond an open face counts, also that of a box with its centre in the grid.
+void refuse_shares_beyond(const Scene& scene, const BodySpec& body) {
+  const AxisBox box = bounding_box(scene.grid, scene.dimension);
+  for (size_t axis = 0; axis < static_cast<size_t>(scene.dimension); ++axis)
+    for (size_t side = 0; side < 2; ++side) {
+      if (scene.faces.fixed[axis][side] != 0) continue;
+      AxisBox beyond = box;
+      const double h = scene.grid.spacing[axis];
+      if (side == 0) {
+        beyond.lower[axis] = box.lower[axis] - h;
+        beyond.upper[axis] = box.lower[axis];
+      } else {
+        beyond.lower[axis] = box.upper[axis];
+        beyond.upper[axis] = box.upper[axis] + h;
+      }
+      const Face face{axis, side};
+      for_each_lattice_share(scene, body, beyond, [&](const LatticeShare& share) {
+        if (!endless(scene, body, share.position, face)) throw_cut_off(scene, body, face, share.position);
+      });
+    }
+}
+
 }  // namespace
 
 void refuse_cut_bodies(const Scene& scene) {
   const Scene larger = with_a_cell_beyond(scene);
-  for (const auto& body : scene.bodies)
+  for (const auto& body : scene.bodies) {
+    if (body.boundary != BoundaryBoxes::keep) {
+      refuse_shares_beyond(scene, body);
+      continue;
+    }
     for_each_lattice_point(larger, body, [&](const LatticePoint& point) {
       const Point q = logical_coordinates(scene.grid, point.x);
       const auto face = face_passed(scene, q);
       if (!face || scene.faces.fixed[face->axis][face->side] != 0 || !body.region(point.x) ||
           endless(scene, body, q, *face))
         return;
-      throw SetupError(fmt::format(
-          "body '{}' reaches out of the grid at the open face {}_{}, to ({:.6g}, {:.6g}, {:.6g}), and would "
-          "be cut off "
-          "there: make the grid larger or the body smaller, or, for a symmetry plane or a support, give the "
-          "face a condition",
-          body.name, scene.grid.axis_name(face->axis), face->side == 0 ? "min" : "max", point.x[0],
-          point.x[1], point.x[2]));
+      throw_cut_off(scene, body, *face, point.x);
     });
+  }
 }
 
 }  // namespace vsb::app

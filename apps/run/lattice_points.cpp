@@ -15,7 +15,7 @@ std::uint64_t scrambled(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-using Index = std::array<long long, 3>;
+using Index = LatticeIndex;
 
 /// A number in [-1, 1) for a lattice index and a direction.
 double random_number(std::uint64_t seed, const Index& index, size_t direction) {
@@ -30,22 +30,17 @@ using Visit = std::function<void(const LatticePoint&)>;
 void visit_points(const UniformLattice& lattice, const Scene& scene, const Jitter& jitter,
                   const Visit& visit) {
   const auto d = static_cast<size_t>(scene.dimension);
-  const auto box = bounding_box(scene.grid, scene.dimension);
-  Index first{0, 0, 0}, last{1, 1, 1};
+  const auto [first, last] =
+      lattice_range(lattice, bounding_box(scene.grid, scene.dimension), scene.dimension);
   double volume = 1;
-  for (size_t i = 0; i < d; ++i) {
-    const double begin = (box.lower[i] - lattice.origin[i]) / lattice.spacing[i];
-    first[i] = static_cast<long long>(std::floor(begin));
-    last[i] = static_cast<long long>(std::ceil(begin + (box.upper[i] - box.lower[i]) / lattice.spacing[i]));
-    volume *= lattice.spacing[i];
-  }
+  for (size_t i = 0; i < d; ++i) volume *= lattice.spacing[i];
   for (long long k = first[2]; k < last[2]; ++k)
     for (long long j = first[1]; j < last[1]; ++j)
       for (long long i = first[0]; i < last[0]; ++i) {
         const Index index{i, j, k};
         LatticePoint point{{}, volume, {}};
         for (size_t c = 0; c < d; ++c) {
-          point.x[c] = lattice.origin[c] + (static_cast<double>(index[c]) + 0.5) * lattice.spacing[c];
+          point.x[c] = lattice.point(index, c);
           if (jitter.amount > 0)
             point.shift[c] = jitter.amount * random_number(jitter.seed, index, c) * lattice.spacing[c];
         }
@@ -66,10 +61,7 @@ void visit_points(const CellLattice& lattice, const Scene& scene, const Jitter& 
         }
     return;
   }
-  UniformLattice uniform;
-  uniform.origin = scene.grid.lower;
-  for (size_t i = 0; i < 3; ++i) uniform.spacing[i] = scene.grid.spacing[i] / lattice.particles_per_cell[i];
-  visit_points(uniform, scene, jitter, visit);
+  visit_points(uniform_lattice(scene.grid, lattice), scene, jitter, visit);
 }
 
 void visit_points(const ConcentricLattice& lattice, const Scene& scene, const Jitter&, const Visit& visit) {
@@ -89,6 +81,26 @@ void visit_points(const ConcentricLattice& lattice, const Scene& scene, const Ji
 }
 
 }  // namespace
+
+UniformLattice uniform_lattice(const GridSpec& grid, const Lattice& lattice) {
+  if (const auto* uniform = std::get_if<UniformLattice>(&lattice)) return *uniform;
+  const auto& per_cell = std::get<CellLattice>(lattice).particles_per_cell;
+  UniformLattice uniform;
+  uniform.origin = grid.lower;
+  for (size_t i = 0; i < 3; ++i) uniform.spacing[i] = grid.spacing[i] / per_cell[i];
+  return uniform;
+}
+
+LatticeRange lattice_range(const UniformLattice& lattice, const AxisBox& box, int dimension) {
+  LatticeRange range;
+  for (size_t i = 0; i < static_cast<size_t>(dimension); ++i) {
+    const double begin = (box.lower[i] - lattice.origin[i]) / lattice.spacing[i];
+    range.first[i] = static_cast<long long>(std::floor(begin));
+    range.last[i] =
+        static_cast<long long>(std::ceil(begin + (box.upper[i] - box.lower[i]) / lattice.spacing[i]));
+  }
+  return range;
+}
 
 void for_each_lattice_point(const Scene& scene, const BodySpec& body, const Visit& visit) {
   std::visit([&](const auto& lattice) { visit_points(lattice, scene, body.jitter, visit); }, body.lattice);

@@ -9,6 +9,18 @@
 
 namespace vsb::app {
 
+using LatticeIndex = std::array<long long, 3>;
+
+/// Indices first, ..., last - 1 in every direction.
+struct LatticeRange {
+  LatticeIndex first{0, 0, 0}, last{1, 1, 1};
+};
+
+/// A cell lattice of a uniform grid, or a uniform lattice, as the latter.
+UniformLattice uniform_lattice(const GridSpec& grid, const Lattice& lattice);
+/// The intervals of a lattice that touch a box.
+LatticeRange lattice_range(const UniformLattice& lattice, const AxisBox& box, int dimension);
+
 struct LatticePoint {
   Point x;        ///< m
   double volume;  ///< m^3 (area in 2D, length in 1D)

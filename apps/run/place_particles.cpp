@@ -5,7 +5,9 @@
 
 #include <limits>
 
+#include "run/box_share.hpp"
 #include "run/cut_bodies.hpp"
+#include "run/cut_lattice.hpp"
 #include "run/lattice_points.hpp"
 #include "run/simulation.hpp"
 
@@ -17,6 +19,50 @@ bool in_grid(const Scene& scene, const Point& x) {
   return contains(scene.grid, scene.dimension, x);
 }
 
+[[noreturn]] void throw_overlap(const BodySpec& body, const BodySpec& other, const Point& x) {
+  throw SetupError(
+      fmt::format("body '{}' overlaps body '{}' at ({}, {}, {}): cut one out of the other with a difference",
+                  body.name, other.name, x[0], x[1], x[2]));
+}
+
+void place_lattice_points(const Scene& scene, size_t b, PlacedParticles& placed) {
+  const auto& body = scene.bodies[b];
+  for_each_lattice_point(scene, body, [&](const LatticePoint& point) {
+    Point x = point.x;
+    if (!in_grid(scene, x) || !body.region(x)) return;
+    for (size_t other = 0; other < b; ++other)
+      if (scene.bodies[other].region(x)) throw_overlap(body, scene.bodies[other], x);
+    for (size_t i = 0; i < 3; ++i) x[i] += point.shift[i];
+    if (!in_grid(scene, x))
+      throw SetupError(fmt::format(
+          "body '{}': its jitter moves a particle out of the grid, to ({}, {}, {}): make the grid larger, "
+          "or let a face of the grid lie between two points of the lattice",
+          body.name, x[0], x[1], x[2]));
+    placed.position.push_back(x);
+    placed.volume.push_back(point.volume);
+  });
+}
+
+/// Bodies that touch share boxes, and the centroid of one's share may lie in the other: they overlap where
+/// they have volume in common.
+void place_lattice_shares(const Scene& scene, size_t b, PlacedParticles& placed) {
+  const auto& body = scene.bodies[b];
+  const auto limits = bounding_box(scene.grid, scene.dimension);
+  const auto volume = for_each_lattice_share(scene, body, limits, [&](const LatticeShare& share) {
+    for (size_t other = 0; other < b; ++other) {
+      const Region both = intersection_of({body.region, scene.bodies[other].region});
+      if (both.overlap(share.box) == Overlap::none) continue;
+      const auto common = share_of(both, share.box, scene.dimension);
+      if (common.volume > least_share * volume_of(share.box, scene.dimension))
+        throw_overlap(body, scene.bodies[other], common.centroid);
+    }
+    placed.position.push_back(share.position);
+    placed.volume.push_back(share.volume);
+  });
+  placed.cut.particles += volume.particles;
+  placed.cut.dropped += volume.dropped;
+}
+
 }  // namespace
 
 PlacedParticles place_particles(const Scene& scene) {
@@ -25,23 +71,10 @@ PlacedParticles place_particles(const Scene& scene) {
   for (size_t b = 0; b < scene.bodies.size(); ++b) {
     const auto& body = scene.bodies[b];
     const auto first = placed.position.size();
-    for_each_lattice_point(scene, body, [&](const LatticePoint& point) {
-      Point x = point.x;
-      if (!in_grid(scene, x) || !body.region(x)) return;
-      for (size_t other = 0; other < b; ++other)
-        if (scene.bodies[other].region(x))
-          throw SetupError(fmt::format(
-              "body '{}' overlaps body '{}' at ({}, {}, {}): cut one out of the other with a difference",
-              body.name, scene.bodies[other].name, x[0], x[1], x[2]));
-      for (size_t i = 0; i < 3; ++i) x[i] += point.shift[i];
-      if (!in_grid(scene, x))
-        throw SetupError(fmt::format(
-            "body '{}': its jitter moves a particle out of the grid, to ({}, {}, {}): make the grid larger, "
-            "or let a face of the grid lie between two points of the lattice",
-            body.name, x[0], x[1], x[2]));
-      placed.position.push_back(x);
-      placed.volume.push_back(point.volume);
-    });
+    if (body.boundary == BoundaryBoxes::keep)
+      place_lattice_points(scene, b, placed);
+    else
+      place_lattice_shares(scene, b, placed);
     if (placed.position.size() == first)
       throw SetupError(fmt::format(
           "body '{}' has no particle: its shape contains no lattice point of the grid", body.name));

@@ -11,6 +11,7 @@
 #include "files/results.hpp"
 #include "run/interrupt.hpp"
 #include "run/progress.hpp"
+#include "run/recovered_stress.hpp"
 #include "run/scene_advice.hpp"
 #include "run/summary.hpp"
 
@@ -74,9 +75,18 @@ class StaticForecast {
   double first_ratio_ = 0, last_ratio_ = 0;
 };
 
+/// A snapshot with the recovered stress where a field or a norm needs it.
+Snapshot take_snapshot(const Scene& scene, Simulation& simulation) {
+  const auto& fields = scene.output.fields;
+  Snapshot snapshot = simulation.snapshot();
+  if (scene.more_norms.recovered || std::count(fields.begin(), fields.end(), "recovered_stress") > 0)
+    recover_stress(scene, snapshot);
+  return snapshot;
+}
+
 void write_frames(Results& results, const Scene& scene, Simulation& simulation) {
   simulation.check_health();
-  const Snapshot snapshot = simulation.snapshot();
+  const Snapshot snapshot = take_snapshot(scene, simulation);
   results.write_frame(snapshot, compare_with_exact(scene, snapshot).exact);
   if (scene.output.grid) results.write_grid_frame(simulation.grid_snapshot(), snapshot.step, snapshot.time);
 }
@@ -173,7 +183,8 @@ RunResult run(const Scene& scene, const RunOptions& options) {
   figures.found_static = found_static;
   figures.balance = balance;
   figures.state_hash = state_hash(simulation->save());
-  figures.errors = compare_with_exact(scene, simulation->snapshot()).errors;
+  figures.errors = compare_with_exact(scene, take_snapshot(scene, *simulation)).errors;
+  figures.cut = simulation->cut_volume();
   figures.particles = simulation->particle_count();
   figures.boundary_nodes = simulation->boundary_nodes();
   figures.state_bytes = simulation->state_bytes();
@@ -204,6 +215,7 @@ void check_scene(const Scene& scene) {
   print_advice(scene);
   fmt::print("# {} particles, {} boundary nodes, {:.3g} MB of state\n", simulation->particle_count(),
              simulation->boundary_nodes(), static_cast<double>(simulation->state_bytes()) / 1e6);
+  print_cut_volume(simulation->cut_volume(), "# ");
   const double settled = loads_settled_at(scene);
   fmt::print("# dt = {:.6g} s (kappa {:.4g}), {} {} steps, loads {}\n", scene.time.dt, scene.time.kappa,
              scene.time.until_static ? "at most" : "exactly", scene.time.steps,

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "run/place_particles.hpp"
 #include "scene/scene.hpp"
 
 namespace vsb::app {
@@ -34,6 +35,9 @@ struct Snapshot {
   std::vector<double> cauchy_stress;       ///< Pa, tension positive
   std::vector<double> volume, mass;        ///< m^3, kg
   std::vector<unsigned char> in_boundary;  ///< 1 where a particle contributes to a node with a traction
+  std::vector<PlacedBody> bodies;          ///< which particles are whose
+  std::vector<double>
+      recovered_stress;  ///< as cauchy_stress; empty unless run/recovered_stress.hpp filled it
 
   size_t count() const { return id.size(); }
 };
@@ -65,6 +69,8 @@ class Simulation {
   virtual int particle_count() const = 0;
   virtual long long step() const = 0;
   virtual int boundary_nodes() const = 0;
+  /// Of the bodies with cut lattices, at the start.
+  virtual CutVolume cut_volume() const = 0;
   /// Memory of particles, nodes and occupancy.
   virtual size_t state_bytes() const = 0;
 

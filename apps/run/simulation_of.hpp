@@ -51,6 +51,8 @@ class SimulationOf final : public Simulation {
   long long step() const override { return step_; }
   int boundary_nodes() const override { return state_.occupancy.boundary_node_count; }
 
+  CutVolume cut_volume() const override { return placed_.cut; }
+
   size_t state_bytes() const override {
     const auto& o = state_.occupancy;
     const auto& n = state_.nodes;
@@ -118,6 +120,7 @@ class SimulationOf final : public Simulation {
     Snapshot s;
     s.step = step_;
     s.time = time();
+    s.bodies = placed_.bodies;
     s.id.resize(n);
     s.in_boundary.assign(host_flag.data(), host_flag.data() + n);
     for (auto* field : {&s.position, &s.initial_position, &s.velocity}) field->assign(3 * n, 0.0);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -52,7 +53,7 @@ std::vector<std::pair<std::string, double>> named_figures(const Scene& scene, co
 }
 
 std::vector<std::string> figure_names(const Scene& scene) {
-  auto names = error_names(scene.compare);
+  auto names = error_names(scene);
   for (const auto& [name, value] : named_figures(scene, {})) names.push_back(name);
   return names;
 }
@@ -62,7 +63,7 @@ std::string summary_json(const Scene& scene, const RunFigures& f) {
   for (const auto& [name, value] : f.errors) errors.insert(name, value);
   for (const auto& [name, value] : build_info()) provenance.insert(name, value);
   provenance.insert("scene", scene.resolved);
-  const toml::table summary{
+  toml::table summary{
       {"name", scene.name},
       {"dimension", scene.dimension},
       {"errors", errors},
@@ -85,6 +86,9 @@ std::string summary_json(const Scene& scene, const RunFigures& f) {
       {"peak_bytes", peak_bytes()},
       {"provenance", provenance},
   };
+  if (f.cut.particles > 0)
+    summary.insert("cut_bodies", toml::table{{"volume", f.cut.particles + f.cut.dropped},
+                                             {"particle_volume", f.cut.particles}});
   std::ostringstream out;
   out << toml::json_formatter{summary} << "\n";
   return out.str();
@@ -104,13 +108,24 @@ double percent_above(double ratio) {
   return std::abs(percent) < 0.005 ? 0 : percent;
 }
 
+void print_cut_volume(const CutVolume& volume, const std::string& prefix) {
+  if (volume.particles == 0) return;
+  const double bodies = volume.particles + volume.dropped;
+  fmt::print(
+      "{}volume of bodies with cut lattices {:.9g}, of their particles {:.9g}: {:.2e} of it in slivers "
+      "too small for a particle\n",
+      prefix, bodies, volume.particles, volume.dropped / bodies);
+}
+
 void print_report(const Scene& scene, const RunFigures& f) {
   if (!f.errors.empty()) {
-    std::string head = fmt::format("{:<12}{:>12}", "error", "this run");
+    size_t width = 12;
+    for (const auto& [name, value] : f.errors) width = std::max(width, name.size() + 2);
+    std::string head = fmt::format("{:<{}}{:>12}", "error", width, "this run");
     for (const auto& p : scene.published) head += fmt::format("  {:>24}", p.source);
     fmt::print("{}\n", head);
     for (const auto& [name, value] : f.errors) {
-      std::string line = fmt::format("{:<12}{:>12.4e}", name, value);
+      std::string line = fmt::format("{:<{}}{:>12.4e}", name, width, value);
       for (const auto& p : scene.published) {
         const auto published = p.errors.find(name);
         line += published == p.errors.end() ? fmt::format("  {:>24}", "-")
@@ -122,6 +137,7 @@ void print_report(const Scene& scene, const RunFigures& f) {
   }
   fmt::print("{} steps in {:.3g} s: {:.4g} ns per particle and step; peak memory {:.4g} MB\n", f.steps_timed,
              f.seconds, f.ns_per_particle_step(), static_cast<double>(peak_bytes()) / 1e6);
+  print_cut_volume(f.cut, "");
   const auto& b = f.balance;
   fmt::print("force ratio {:.2e}, energy ratio {:.2e}\n", b.force_ratio, b.energy_ratio);
   print_resultant(scene, b, "");

@@ -18,6 +18,7 @@ struct RunFigures {
   bool found_static = false;
   int particles = 0, boundary_nodes = 0;
   size_t state_bytes = 0;
+  CutVolume cut;
   BalanceReport balance;
   std::string state_hash;  ///< of the particles' bits at the end
   std::vector<std::pair<std::string, double>> errors;
@@ -33,10 +34,13 @@ std::vector<std::string> figure_names(const Scene& scene);
 /// Errors, counts, times, resultant, memory and provenance as JSON.
 std::string summary_json(const Scene& scene, const RunFigures& figures);
 
-/// The same for people: errors beside the published ones, then cost.
+/// Volumes of bodies with cut lattices, in a line that begins with `prefix`; nothing where there are none.
+void print_cut_volume(const CutVolume& volume, const std::string& prefix);
+
 /// Resultant and torque of the tractions beside the exact ones, in lines that begin with `prefix`.
 void print_resultant(const Scene& scene, const BalanceReport& balance, const std::string& prefix);
 
+/// The same for people: errors beside the published ones, then cost.
 void print_report(const Scene& scene, const RunFigures& figures);
 
 /// How far a ratio lies above 1, in percent for two decimals: what rounds to zero has no sign left.

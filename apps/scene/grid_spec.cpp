@@ -59,8 +59,8 @@ double shortest_edge(const GridSpec& grid, int dimension) {
   return shortest;
 }
 
-GridBox bounding_box(const GridSpec& grid, int dimension) {
-  GridBox box;
+AxisBox bounding_box(const GridSpec& grid, int dimension) {
+  AxisBox box;
   const auto d = static_cast<size_t>(dimension);
   if (!grid.polar) {
     for (size_t i = 0; i < d; ++i) {

@@ -43,10 +43,7 @@ Point node_position(const GridSpec& grid, int dimension, const std::array<int, 3
 double shortest_edge(const GridSpec& grid, int dimension);
 
 /// The smallest box around the grid.
-struct GridBox {
-  Point lower{}, upper{};
-};
-GridBox bounding_box(const GridSpec& grid, int dimension);
+AxisBox bounding_box(const GridSpec& grid, int dimension);
 
 /// Whether a point lies in the grid; a polar grid counts with its arcs, not with their chords.
 bool contains(const GridSpec& grid, int dimension, const Point& x);

@@ -18,6 +18,11 @@ struct CellLattice {
 /// Particles at origin + (k + 1/2) spacing, of the volume of one interval.
 struct UniformLattice {
   std::array<double, 3> origin{}, spacing{};  ///< m
+
+  /// Coordinate of a point, in the middle of its interval.
+  double point(const std::array<long long, 3>& index, size_t axis) const {
+    return origin[axis] + (static_cast<double>(index[axis]) + 0.5) * spacing[axis];
+  }
 };
 
 /// Rings around an axis along z: in the middle of ring i of equal width dr, r_i = a + (i + 1/2) dr,
@@ -39,6 +44,13 @@ using Lattice = std::variant<CellLattice, UniformLattice, ConcentricLattice>;
 struct Jitter {
   double amount = 0;
   std::uint64_t seed = 1;
+};
+
+/// What becomes of the lattice boxes that the boundary of the body cuts (see run/cut_lattice.hpp).
+enum class BoundaryBoxes {
+  keep,   ///< whole if their centre lies in the body, else nothing
+  cut,    ///< one particle at the centroid of what lies in the body, of its volume
+  cut2x2  ///< the same for each of their halves (quarters, octants)
 };
 
 }  // namespace vsb::app

@@ -78,6 +78,18 @@ ConcentricLattice read_concentric(TableReader r, size_t d) {
   return lattice;
 }
 
+BoundaryBoxes read_boundary(TableReader& body_table, const GridSpec& grid) {
+  static const std::vector<std::string> names = {"keep", "cut", "cut2x2"};
+  const std::string name = body_table.choice("boundary", names, names[0]);
+  const auto boundary =
+      static_cast<BoundaryBoxes>(std::find(names.begin(), names.end(), name) - names.begin());
+  if (boundary != BoundaryBoxes::keep && grid.mapped())
+    body_table.fail(
+        *body_table.source().get("boundary"), "boundary",
+        "only \"keep\" here: on a rectilinear or polar grid the lattice has no equal boxes to cut");
+  return boundary;
+}
+
 }  // namespace
 
 void read_lattice(TableReader& body_table, const GridSpec& grid, int dimension, BodySpec& body) {
@@ -97,7 +109,7 @@ void read_lattice(TableReader& body_table, const GridSpec& grid, int dimension, 
     if (lattice.has("concentric")) {
       if (dimension == 1)
         body_table.fail(*written, "lattice", "a concentric lattice is for dimension 2 or 3");
-      for (const char* key : {"jitter", "seed"})
+      for (const char* key : {"jitter", "seed", "boundary"})
         if (const auto* node = body_table.source().get(key))
           body_table.fail(*node, key, "is for particles_per_cell and lattice.uniform, not for rings");
       body.lattice = read_concentric(lattice.table("concentric"), d);
@@ -107,12 +119,16 @@ void read_lattice(TableReader& body_table, const GridSpec& grid, int dimension, 
     lattice.finish();
   }
   if (std::holds_alternative<ConcentricLattice>(body.lattice)) return;
+  body.boundary = read_boundary(body_table, grid);
   body.jitter.amount =
       body_table.number("jitter", {0, 0.5, false, true}, 0.0,
                         "random shift of every particle, in spacings: at most this either way");
   if (body.jitter.amount > 0 && grid.mapped() && std::holds_alternative<CellLattice>(body.lattice))
     body_table.fail(*body_table.source().get("jitter"), "jitter",
                     "is for uniform grids and for lattice.uniform, not for particles_per_cell on this grid");
+  if (body.jitter.amount > 0 && body.boundary != BoundaryBoxes::keep)
+    body_table.fail(*body_table.source().get("jitter"), "jitter",
+                    "would move particles away from the centroids of the boxes; is for boundary = \"keep\"");
   body.jitter.seed = static_cast<std::uint64_t>(
       body_table.integer("seed", 0, std::numeric_limits<long long>::max(), 1, "of the random shifts"));
 }

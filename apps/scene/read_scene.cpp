@@ -56,8 +56,8 @@ Affine<std::array<double, N>> read_affine(TableReader& r, const std::string& key
 BodySpec read_body(TableReader r, const GridSpec& grid, int dimension, size_t number) {
   const auto d = static_cast<size_t>(dimension);
   BodySpec body;
-  r.allow_only({"name", "shape", "particles_per_cell", "lattice", "jitter", "seed", "density", "stress",
-                "velocity", "material"});
+  r.allow_only({"name", "shape", "particles_per_cell", "lattice", "boundary", "jitter", "seed", "density",
+                "stress", "velocity", "material"});
   body.name = r.text("name", fmt::format("body {}", number + 1));
   body.region = read_region(r, "shape", dimension, false);
   read_lattice(r, grid, dimension, body);
@@ -275,10 +275,12 @@ TimeSpec read_time(TableReader r, const Scene& scene) {
 OutputSpec read_output(TableReader r) {
   static const std::vector<std::string> fields = {"id",     "displacement", "velocity",   "cauchy_stress",
                                                   "volume", "mass",         "in_boundary"};
+  auto allowed = fields;
+  allowed.emplace_back("recovered_stress");
   OutputSpec o;
   o.every =
       r.integer("every", 0, 1'000'000'000'000LL, 0, "steps between frames; 0: first and last state only");
-  o.fields = r.texts("fields", fields, fields);
+  o.fields = r.texts("fields", allowed, fields);
   o.grid = r.boolean("grid", false);
   o.checkpoint_minutes =
       r.number("checkpoint_minutes", Range::at_least(0), 10.0, "wall time; 0: at an interrupt only");
@@ -286,10 +288,11 @@ OutputSpec read_output(TableReader r) {
   return o;
 }
 
-Comparison read_comparison(TableReader& document) {
+Comparison read_comparison(TableReader& document, MoreNorms& more) {
   if (!document.has("compare")) return {};
   TableReader r = document.table("compare");
-  std::vector<std::string> keys = {"solution", "length", "traction", "inner_radius", "outer_radius"};
+  std::vector<std::string> keys = {"solution",     "length",    "traction",  "inner_radius",
+                                   "outer_radius", "recovered", "cell_means"};
   keys.insert(keys.end(), ellipse_keys.begin(), ellipse_keys.end());
   r.allow_only(keys);
   const std::string solution = r.choice("solution", {"column", "cylinder", "ellipse"});
@@ -308,17 +311,30 @@ Comparison read_comparison(TableReader& document) {
   } else {
     comparison = read_ellipse(r);
   }
+  more.recovered = r.boolean("recovered", false);
+  more.cell_means = r.boolean("cell_means", false);
   r.finish();
   return comparison;
 }
 
 }  // namespace
 
-std::vector<std::string> error_names(const Comparison& comparison) {
-  if (std::holds_alternative<ColumnComparison>(comparison)) return {"e_u", "e_u_exact", "e_sigma"};
-  if (std::holds_alternative<CylinderComparison>(comparison)) return {"e_rr", "e_tt", "e_u"};
-  if (std::holds_alternative<EllipseComparison>(comparison)) return {"e_xx", "e_yy", "e_xy"};
-  return {};
+std::vector<std::string> error_names(const Scene& scene) {
+  std::vector<std::string> names, stresses;
+  if (std::holds_alternative<ColumnComparison>(scene.compare)) {
+    names = {"e_u", "e_u_exact", "e_sigma"};
+    stresses = {"e_sigma"};
+  } else if (std::holds_alternative<CylinderComparison>(scene.compare)) {
+    names = {"e_rr", "e_tt", "e_u"};
+    stresses = {"e_rr", "e_tt"};
+  } else if (std::holds_alternative<EllipseComparison>(scene.compare)) {
+    names = stresses = {"e_xx", "e_yy", "e_xy"};
+  }
+  if (scene.more_norms.recovered)
+    for (const auto& name : stresses) names.push_back(name + "_recovered");
+  if (scene.more_norms.cell_means)
+    for (const auto& name : stresses) names.push_back(name + "_cell_mean");
+  return names;
 }
 
 namespace {
@@ -405,9 +421,9 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
         "nothing loads the bodies (no traction, gravity, initial stress or velocity), so there is no static "
         "state to run to");
   scene.output = read_output(r.table("output"));
-  scene.compare = read_comparison(r);
+  scene.compare = read_comparison(r, scene.more_norms);
   for (auto& table : r.tables("published"))
-    scene.published.push_back(read_published(table, error_names(scene.compare)));
+    scene.published.push_back(read_published(table, error_names(scene)));
   r.finish();
   scene.resolved = resolved.toml();
   return scene;

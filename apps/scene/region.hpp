@@ -6,6 +6,7 @@
 #include <array>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace vsb::app {
@@ -13,8 +14,33 @@ namespace vsb::app {
 /// A point in m; coordinates beyond the scene's dimension are zero.
 using Point = std::array<double, 3>;
 
-/// Whether a point lies in the region.
-using Region = std::function<bool(const Point&)>;
+/// lower <= x <= upper.
+struct AxisBox {
+  Point lower{}, upper{};
+};
+
+/// The share of a box that lies in a region: nothing or everything, but for sets of no volume, or possibly
+/// some.
+enum class Overlap { none, some, all };
+
+/// A set of points. The answer for a box is safe: `none` and `all` are certain, however thin the region's
+/// features are; of boxes in between, some are called `some` that are not.
+class Region {
+ public:
+  using Contains = std::function<bool(const Point&)>;
+  using OverlapWith = std::function<Overlap(const AxisBox&)>;
+
+  Region() = default;
+  Region(Contains contains, OverlapWith overlap)
+      : contains_(std::move(contains)), overlap_(std::move(overlap)) {}
+
+  bool operator()(const Point& x) const { return contains_(x); }
+  Overlap overlap(const AxisBox& box) const { return overlap_(box); }
+
+ private:
+  Contains contains_;
+  OverlapWith overlap_;
+};
 
 Region everywhere();
 /// lower <= x <= upper in the first `dimension` coordinates.

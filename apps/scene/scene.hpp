@@ -48,6 +48,7 @@ struct BodySpec {
   Region region;
   Lattice lattice;
   Jitter jitter;
+  BoundaryBoxes boundary = BoundaryBoxes::keep;
   double density = 0;  ///< kg/m^3
   LinearElasticSpec material{};
   Affine<Stress6> stress;
@@ -116,8 +117,11 @@ struct CylinderComparison {
 using EllipseComparison = EllipseSpec;
 using Comparison = std::variant<std::monostate, ColumnComparison, CylinderComparison, EllipseComparison>;
 
-/// The names of the error norms that a comparison yields.
-std::vector<std::string> error_names(const Comparison& comparison);
+/// Error norms of the stress beside those of the particles' own.
+struct MoreNorms {
+  bool recovered = false;   ///< of the recovered stress (run/recovered_stress.hpp): e_rr_recovered
+  bool cell_means = false;  ///< of the means over cells (run/cell_means.hpp): e_rr_cell_mean
+};
 
 /// Figures to print beside ours: error name -> what the source says.
 struct Published {
@@ -141,10 +145,14 @@ struct Scene {
   TimeSpec time;
   OutputSpec output;
   Comparison compare;
+  MoreNorms more_norms;
   std::vector<Published> published;
 
   std::string resolved;  ///< the scene with all defaults, as TOML
 };
+
+/// The names of the error norms that a scene's comparison yields.
+std::vector<std::string> error_names(const Scene& scene);
 
 /// Reads and checks a scene. `overrides` are key=value pairs of the command line (key.sub=value,
 /// array[0].key=value). Throws SceneError, whose text names file, line, column, key, value and what is

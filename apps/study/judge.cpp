@@ -54,7 +54,7 @@ std::vector<StudyLine> judge_case(const Study& study, const StudySeries& series,
     lines.push_back(outcome_line(c, record));
   if (!c.expected_failure.empty()) return lines;
 
-  auto names = error_names(c.scene->compare);
+  auto names = error_names(*c.scene);
   const auto add = [&](const std::string& name) {
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   };

@@ -66,7 +66,7 @@ std::string json_description(const Study& study) {
     series.push_back(s.name);
     for (const auto& c : s.cases)
       if (c.scene)
-        for (const auto& name : error_names(c.scene->compare))
+        for (const auto& name : error_names(*c.scene))
           if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
   for (const auto& name : names) errors.push_back(name);

@@ -159,7 +159,7 @@ class BadScenes(ProgramTest):
     def test_21_misspelt_keys_are_answered_with_all_keys_of_the_table(self):
         for old, new, allowed in (
                 ("spacing =", "spacng =", "lower, polar, spacing, upper, x, y"),
-                ("density =", "densty =", "density, jitter, lattice, material, name, particles_per_cell, seed, shape, stress, velocity"),
+                ("density =", "densty =", "boundary, density, jitter, lattice, material, name, particles_per_cell, seed, shape, stress, velocity"),
                 ("kappa =", "kapa =", "dt, kappa, steps, until_static"),
                 ("dimension =", "dimensoin =", "body, compare, dimension, faces, gravity, grid, method, name, output, precision, "
                  "published, time, title, traction"),

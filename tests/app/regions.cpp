@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Whether a box lies in a region: the answers none and all must be certain.
+#include "scene/region.hpp"
+
+#include <string>
+
+#include "app/shapes.hpp"
+
+using namespace vsb::app;
+using vsb::test::Random;
+
+namespace {
+
+Point random_in(const AxisBox& box, Random& random) {
+  Point x{};
+  for (size_t i = 0; i < 3; ++i)
+    if (box.upper[i] > box.lower[i]) x[i] = random(box.lower[i], box.upper[i]);
+  return x;
+}
+
+/// Corners and random points of a box against the region's answer for the box.
+void check_answers(const Region& region, int dimension) {
+  Random random(7);
+  int answers[3] = {0, 0, 0};
+  for (int n = 0; n < 4000; ++n) {
+    AxisBox box;
+    const double size = std::pow(10, random(-2, 0));
+    for (size_t i = 0; i < static_cast<size_t>(dimension); ++i) {
+      box.lower[i] = random(-2, 2);
+      box.upper[i] = box.lower[i] + size * random(0.5, 1.5);
+    }
+    const Overlap overlap = region.overlap(box);
+    ++answers[static_cast<int>(overlap)];
+    if (overlap == Overlap::some) continue;
+    bool agree = true;
+    for (int k = 0; k < 30; ++k) agree = agree && region(random_in(box, random)) == (overlap == Overlap::all);
+    CHECK(agree);
+  }
+  for (const int count : answers) CHECK(count > 40);  // every answer was put to the test
+}
+
+}  // namespace
+
+TEST_CASE("none and all are certain for every shape and combination") {
+  for (const int d : {1, 2, 3}) {
+    check_answers(box(d, {-1, -0.7, -0.8}, {0.5, 0.9, 1}), d);
+    check_answers(ball(d == 1   ? Point{0.2, 0, 0}
+                       : d == 2 ? Point{0.2, 0.1, 0}
+                                : Point{0.2, 0.1, -0.3},
+                       1.1),
+                  d);
+    check_answers(ellipsoid(d, {0.1, -0.2, 0.3}, {1.5, 0.8, 1.1}), d);
+    check_answers(half_space({0.2, 0, 0}, {1, d > 1 ? -2.0 : 0.0, d > 2 ? 0.5 : 0.0}), d);
+    const Region a = box(d, {-1.5, -1, -1}, {0.3, 1, 1}), b = box(d, {0.1, -1.2, -1.3}, {1.4, 0.6, 1});
+    check_answers(union_of({a, b}), d);
+    check_answers(difference_of({box(d, {-1.7, -1.7, -1.7}, {1.7, 1.7, 1.7}), ball({}, 0.9)}), d);
+    check_answers(intersection_of({ball({}, 1.6), half_space({0.5, 0, 0}, {1, 0, 0})}), d);
+  }
+  for (const int axis : {0, 1, 2}) check_answers(cylinder(axis, {0.1, 0.2, -0.1}, 1.3, -1.1, 1.2), 3);
+}
+
+TEST_CASE("a feature of any thickness makes a box that it crosses a box in between") {
+  const double thin = 1e-7;
+  const Region slit =
+      difference_of({box(2, {-1, -1, 0}, {1, 1, 0}), box(2, {-2, 0.31, 0}, {2, 0.31 + thin, 0})});
+  CHECK(slit.overlap({{-0.5, 0, 0}, {0.5, 0.5, 0}}) == Overlap::some);
+  CHECK(slit.overlap({{-0.5, 0, 0}, {0.5, 0.31, 0}}) == Overlap::all);
+  const Region shell = difference_of({ball({}, 1), ball({}, 1 - thin)});
+  CHECK(shell.overlap({{0.9, -0.1, -0.1}, {1.1, 0.1, 0.1}}) == Overlap::some);
+  CHECK(shell.overlap({{0.1, 0.1, 0.1}, {0.4, 0.4, 0.4}}) == Overlap::none);
+}
+
+TEST_CASE("faces in common count for nothing") {
+  const Region unit = box(3, {0, 0, 0}, {1, 1, 1});
+  CHECK(unit.overlap({{0, 0, 0}, {1, 1, 1}}) == Overlap::all);
+  CHECK(unit.overlap({{1, 0, 0}, {2, 1, 1}}) == Overlap::none);
+  CHECK(unit.overlap({{0.5, 0, 0}, {2, 1, 1}}) == Overlap::some);
+  CHECK(half_space({1, 0, 0}, {1, 0, 0}).overlap({{1, 0, 0}, {2, 1, 1}}) == Overlap::none);
+  CHECK(difference_of({everywhere(), unit}).overlap({{0.2, 0, 0}, {1, 1, 1}}) == Overlap::none);
+  CHECK(difference_of({everywhere(), unit}).overlap({{1, 0, 0}, {2, 1, 1}}) == Overlap::all);
+}
