@@ -310,7 +310,7 @@ class StudyReader {
     for (const auto& series : study_.series)
       for (const auto& c : series.cases)
         if (c.scene)
-          for (const auto& name : error_names(c.scene->compare))
+          for (const auto& name : error_names(*c.scene))
             if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
     Reach reach;
     r.allow_only({"figures", "level"});
