@@ -176,6 +176,7 @@ RunResult run(const Scene& scene, const RunOptions& options) {
   figures.errors = compare_with_exact(scene, simulation->snapshot()).errors;
   figures.particles = simulation->particle_count();
   figures.boundary_nodes = simulation->boundary_nodes();
+  figures.void_filter = simulation->void_filter();
   figures.state_bytes = simulation->state_bytes();
   results.write_summary(summary_json(scene, figures));
   results.remove_checkpoint();
