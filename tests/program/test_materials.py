@@ -26,7 +26,8 @@ class Refusals(ProgramTest):
         self.assertFalse(out.exists())
 
     def test_an_unknown_law(self):
-        self.refused("column", "body[0].material.law", "henky", '"linear_elastic", "hencky"', extra=("--set", "body[0].material.law=henky"))
+        self.refused("column", "body[0].material.law", "henky", "'linear_elastic', 'hencky'",
+                     extra=("--set", "body[0].material.law=henky"))
 
     def test_an_initial_stress_that_no_deformation_gives(self):
         self.refused("column", "body[0].stress", "starts undeformed", extra=(*HENCKY, "--set", "body[0].stress=[1,0,0,0,0,0]"))
@@ -48,7 +49,7 @@ class Refusals(ProgramTest):
 
     def test_the_resolved_scene_names_the_law_and_the_filter(self):
         done = vsb("check", SCENES / "column.toml", *HENCKY, "--set", "method.void_filter=true")
-        self.assertIn('law = "hencky"', done.stdout)
+        self.assertIn("law = 'hencky'", done.stdout)
         self.assertIn("void_filter = true", done.stdout)
 
 
@@ -67,32 +68,21 @@ class LargeStrain(ProgramTest):
             np.testing.assert_allclose(fields["exact_displacement"][:, 0], (roots[law] - 1) * start, rtol=1e-9)
             np.testing.assert_allclose(fields["exact_cauchy_stress"][:, 0], -500, rtol=1e-12)
 
-    def test_the_displacement_of_the_column_to_round_off(self):
-        errors = self.run_scene("column", *HENCKY, "--set", "traction[0].time={smooth_ramp_steps=10000}")["errors"]
-        self.assertNotIn("e_u", errors)  # (A1) is for the other law
-        self.assertLess(errors["e_sigma"], 1e-13)
-        self.assertLess(errors["e_u_exact"], 1e-12)
+    def test_the_patch_in_one_two_and_three_dimensions(self):
+        for scene in ("column", "column-2d", "column-3d"):
+            errors = self.run_scene(scene, *HENCKY)["errors"]
+            self.assertNotIn("e_u", errors)  # (A1) is for the other law
+            self.assertLess(errors["e_sigma"], 1e-13)
+            self.assertLess(errors["e_u_exact"], 1e-10)
 
-    def test_a_turning_body_keeps_its_volume_stress_and_shape(self):
-        # A disc that spins freely: the rate form and the law from F give the same small stresses of the rotation.
-        scene = self.write("""
-            dimension = 2
-            grid = { lower = [-4.0, -4.0], upper = [4.0, 4.0], spacing = 0.5 }
-            time = { kappa = 0.3, steps = 400 }
-            [[body]]
-            shape = { disc = { center = [0.01, 0.02], radius = 2.0 } }
-            particles_per_cell = 3
-            density = 1000.0
-            velocity = { value = [0.0, 0.0], dx = [0.0, 1.0], dy = [-1.0, 0.0] }
-            material = { youngs_modulus = 1e6, poisson_ratio = 0.3 }
-            """)
-        stress = {}
-        for law in ("linear_elastic", "hencky"):
-            self.run_scene(scene, "--set", f"body[0].material.law={law}")
-            stress[law] = last_fields(self.folder / "scene")["cauchy_stress"]
-        scale = np.abs(stress["linear_elastic"]).max()
-        np.testing.assert_allclose(stress["hencky"], stress["linear_elastic"], rtol=0, atol=0.01 * scale)
-        self.assertGreater(np.abs(stress["hencky"] - stress["linear_elastic"]).max(), 0)
+    def test_what_is_left_of_the_displacement_is_first_order_in_the_ramp(self):
+        # Particles move with the velocity before the re-map, and strain with that after it.
+        error = {}
+        for n in (10000, 20000):
+            error[n] = self.run_scene("column", *HENCKY, "--set", "traction[0].time={smooth_ramp_steps=%d}" % n, "--set",
+                                      f"time.steps={n + 10000}")["errors"]["e_u_exact"]
+        self.assertLess(error[10000], 1e-10)
+        self.assertAlmostEqual(error[20000] / error[10000], 0.5, delta=0.05)
 
 
 class Bodies(ProgramTest):
@@ -132,7 +122,7 @@ class VoidFilter(ProgramTest):
 
     def test_the_effect_is_printed(self):
         done = vsb("run", SCENES / "cylinder-voids.toml", "--out", self.folder / "c", *GAPS, "--set",
-                   "time.until_static.energy_ratio=1")
+                   "time.until_static.energy_ratio=0.9")
         self.assertRegex(done.stdout, r"void filter: \d+ false voids inside the bodies, \d+ boundary nodes dropped, \d+ left")
 
     def test_a_body_without_voids_has_the_same_bits(self):
