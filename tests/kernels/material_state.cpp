@@ -10,9 +10,13 @@ using namespace vsb::test;
 
 namespace {
 
-/// Particles in the middle of a cell of unit edges, under the velocity gradient L.
+LinearBasis<2, double> one_cell() {
+  return {make_grid<2, double>({{1, 1, 1}})};
+}
+
+/// Particles in the middle of a cell, under the velocity gradient L; they do not move.
 struct Sheared {
-  LinearBasis<2, double> basis{UniformGrid<2, double>({{0, 0}}, {{1, 1}}, {{1, 1}})};
+  LinearBasis<2, double> basis = one_cell();
   ParticleBlock<2, double, Device> block;
   Nodes<2, double, Device> nodes = allocate_nodes<2, double, Device>(4);
 
@@ -20,7 +24,7 @@ struct Sheared {
       : block(allocate_particles<2, double, Device>(particles)) {
     edit(block, [&](const auto& host) {
       for (int p = 0; p < particles; ++p) {
-        host.position(p, 0) = host.position(p, 1) = 0.5;
+        for (int i = 0; i < 2; ++i) host.position(p, i) = basis.grid.lower[i] + 0.5 * basis.grid.spacing[i];
         host.volume(p) = 1;
       }
     });
@@ -47,7 +51,6 @@ TEST_CASE("each body finds its rows of state, and bodies without state have none
   const std::vector<Body<double>> bodies{{0, 2, linear}, {2, 3, hencky, 1}, {3, 6, hencky, -3}};
   for (int n = 0; n < 3; ++n) {
     sheet.update(bodies, 0.5);
-    // Each particle is taken back to where the velocity gradient is known: it is uniform.
     edit(sheet.block, [](const auto& host) {
       host.material_state(2, 1) += 1;  // row 2, of particle 5, gets another shear
     });
