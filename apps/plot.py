@@ -98,7 +98,7 @@ def compared_quantities(frame):
         return [(rf"$\sigma_{{{name}}}$", "Pa", stress[:, c], exact[:, c], f"e_{name}")
                 for name, c in (("xx", 0), ("yy", 1), ("xy", 3))]
     if "e_sigma" in errors:
-        return [(r"$u_x$", "m", u[:, 0], exact_u[:, 0], "e_u"),
+        return [(r"$u_x$", "m", u[:, 0], exact_u[:, 0], "e_u" if "e_u" in errors else "e_u_exact"),
                 (r"$\sigma_{xx}$", "Pa", stress[:, 0], exact[:, 0], "e_sigma")]
     mean = stress[:, :3].mean(axis=1)
     return [("mean stress", "Pa", mean, None, None), ("von Mises stress", "Pa", von_mises(stress), None, None),

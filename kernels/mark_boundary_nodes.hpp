@@ -4,7 +4,8 @@
 ///   E1: void cells (no particle inside) that have an active node, that is, that touch a non-void cell;
 ///   E2: non-void cells that share a node with a cell of E1;
 ///   N1: active nodes of cells of E1 or E2.
-/// Underfilled cells (kernels/mark_underfilled_cells.hpp), where they are asked for, count as cells of E2.
+/// Underfilled cells (kernels/mark_underfilled_cells.hpp), where they are asked for, count as cells of E2;
+/// the void filter (kernels/filter_voids.hpp), where it is asked for, leaves void cells out of E1.
 ///
 /// Cells and nodes are rows of bits along x, 64 to a word, and every "touches" is a dilation of bit rows.
 /// There are no cells beyond a face of the grid, so a fixed or symmetry plane there makes no boundary; a free
@@ -26,6 +27,7 @@ struct CellBits {
   Rows exterior;     ///< [row][word]: E1
   Rows boundary;     ///< [row][word]: E1 and E2
   Rows underfilled;  ///< [row][word]: cells of E2 for want of particles; no rows without a fill criterion
+  Rows outside;      ///< [row][word]: void cells that may be of E1; no rows without a void filter
 };
 
 /// How rows of bits along x tile a grid.
@@ -54,7 +56,7 @@ CellBits<Device> allocate_cell_bits(const CellNumbering<Dim>& grid) {
   const auto r = static_cast<size_t>(rows.cell_row_count()), w = static_cast<size_t>(rows.words);
   using Rows = typename CellBits<Device>::Rows;
   return {Rows("vsb::cells_occupied", r, w), Rows("vsb::cells_exterior", r, w),
-          Rows("vsb::cells_boundary", r, w), Rows()};
+          Rows("vsb::cells_boundary", r, w), Rows(), Rows()};
 }
 
 namespace kernel {
@@ -121,6 +123,16 @@ struct FindExterior {
   }
 };
 
+/// Leaves in E1 what belongs to the outside, word by word.
+template <class Device>
+struct KeepOutside {
+  CellBits<Device> bits;
+  int words;
+  KOKKOS_FUNCTION void operator()(int i) const {
+    bits.exterior(i / words, i % words) &= bits.outside(i / words, i % words);
+  }
+};
+
 /// E1 and E2, word by word.
 template <int Dim, class Device>
 struct FindBoundary {
@@ -133,13 +145,14 @@ struct FindBoundary {
   }
 };
 
-/// Adds the underfilled cells to E1 and E2, word by word.
+/// Adds the underfilled cells to E1 and E2, word by word; void cells are none of them.
 template <class Device>
 struct AddUnderfilled {
   CellBits<Device> bits;
   int words;
   KOKKOS_FUNCTION void operator()(int i) const {
-    bits.boundary(i / words, i % words) |= bits.underfilled(i / words, i % words);
+    const int r = i / words, w = i % words;
+    bits.boundary(r, w) |= bits.underfilled(r, w) & bits.occupied(r, w);
   }
 };
 
@@ -168,6 +181,15 @@ struct MarkNodes {
 
 }  // namespace kernel
 
+/// Overwrites the set of non-void cells. All particles must lie in the grid.
+template <class Exec, class Grid, int Dim, class Real, class Device>
+void mark_occupied_cells(const Exec& exec, const Particles<Dim, Real, Device>& particles,
+                         const CellBits<Device>& bits, const Grid& grid) {
+  Kokkos::deep_copy(exec, bits.occupied, std::uint64_t(0));
+  Kokkos::parallel_for("vsb::mark_occupied", Kokkos::RangePolicy<Exec>(exec, 0, particles.count()),
+                       kernel::MarkOccupied<Grid, Dim, Real, Device>{particles, grid, bits.occupied});
+}
+
 /// Overwrites boundary[node] with tractions[node] at the nodes of N1 and with 0 elsewhere. tractions[node]
 /// says which tractions are declared at the place of a node (bit k: traction k). All particles must lie in
 /// the grid. Returns the number of nodes at which a traction acts; waits for the device.
@@ -178,11 +200,12 @@ int mark_boundary_nodes(const Exec& exec, const Particles<Dim, Real, Device>& pa
   const BitRows<Dim> tiling(grid);
   const Kokkos::RangePolicy<Exec> over_cell_words(exec, 0, tiling.cell_row_count() * tiling.words);
   const Kokkos::RangePolicy<Exec> over_node_words(exec, 0, tiling.node_row_count() * tiling.words);
-  Kokkos::deep_copy(exec, bits.occupied, std::uint64_t(0));
-  Kokkos::parallel_for("vsb::mark_occupied", Kokkos::RangePolicy<Exec>(exec, 0, particles.count()),
-                       kernel::MarkOccupied<Grid, Dim, Real, Device>{particles, grid, bits.occupied});
+  mark_occupied_cells(exec, particles, bits, grid);
   Kokkos::parallel_for("vsb::find_exterior_cells", over_cell_words,
                        kernel::FindExterior<Dim, Device>{bits, tiling});
+  if (bits.outside.size() > 0)
+    Kokkos::parallel_for("vsb::keep_outside_cells", over_cell_words,
+                         kernel::KeepOutside<Device>{bits, tiling.words});
   Kokkos::parallel_for("vsb::find_boundary_cells", over_cell_words,
                        kernel::FindBoundary<Dim, Device>{bits, tiling});
   if (bits.underfilled.size() > 0)

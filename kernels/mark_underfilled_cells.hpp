@@ -50,9 +50,8 @@ struct MarkUnderfilled {
 
 }  // namespace kernel
 
-/// Overwrites `underfilled` with the cells of which the particles fill less than `minimum_fill`. Void cells
-/// are among them and change nothing: they are of E1, or have no active node. Returns whether this changed
-/// any; waits for the device.
+/// Overwrites `underfilled` with the cells of which the particles fill less than `minimum_fill`, void cells
+/// among them. Returns whether this changed any; waits for the device.
 template <class Exec, class Grid, int Dim, class Real, class Device>
 bool mark_underfilled_cells(const Exec& exec, const Particles<Dim, Real, Device>& particles,
                             const ParticleBins<Device>& bins, const Grid& grid, double minimum_fill,

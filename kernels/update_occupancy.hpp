@@ -6,6 +6,7 @@
 /// moment alone, and a resumed run finds the ones it had.
 #pragma once
 
+#include <vsb/kernels/filter_voids.hpp>
 #include <vsb/kernels/locate_particles.hpp>
 #include <vsb/kernels/mark_boundary_nodes.hpp>
 #include <vsb/kernels/mark_underfilled_cells.hpp>
@@ -47,6 +48,27 @@ void set_fill_criterion(Occupancy<Device>& o, double tau) {
                     ~std::uint64_t(0));  // no set of cells: the next update finds another
 }
 
+/// Makes the next update mark the boundary whether or not a particle has changed its bin.
+template <class Device>
+void mark_anew(Occupancy<Device>& o) {
+  Kokkos::deep_copy(o.bins.bin, -1);
+}
+
+/// From the next update on, only void cells of the outside count as cells of E1. All cells are in the set
+/// from which the outside of the next update follows; clear the bits in CellBits::outside of cells that are
+/// known to lie in the body.
+template <class Device, class Basis>
+void set_void_filter(Occupancy<Device>& o, const Basis& basis) {
+  o.cells.outside = typename CellBits<Device>::Rows("vsb::cells_outside", o.cells.boundary.extent(0),
+                                                    o.cells.boundary.extent(1));
+  const auto host = Kokkos::create_mirror_view(o.cells.outside);
+  for (size_t r = 0; r < host.extent(0); ++r)
+    for (size_t w = 0; w < host.extent(1); ++w)
+      host(r, w) = kernel::valid_bits(static_cast<int>(w), basis.grid.cells[0]);
+  Kokkos::deep_copy(o.cells.outside, host);
+  mark_anew(o);
+}
+
 /// Brings the occupancy up to date. Returns the lowest number of a particle that left the grid, else -1.
 template <class Exec, class Basis, int Dim, class Real, class Device>
 int update_occupancy(const Exec& exec, const Particles<Dim, Real, Device>& particles, Occupancy<Device>& o,
@@ -56,6 +78,7 @@ int update_occupancy(const Exec& exec, const Particles<Dim, Real, Device>& parti
   if (where.changed) sort_by_bin(exec, o.bins);
   const bool refilled = o.minimum_fill > 0 && mark_underfilled_cells(exec, particles, o.bins, basis.grid,
                                                                      o.minimum_fill, o.cells.underfilled);
+  if (where.changed && o.cells.outside.size() > 0) update_outside(exec, particles, o.cells, basis.grid);
   if (where.changed || refilled)
     o.boundary_node_count =
         mark_boundary_nodes(exec, particles, o.cells, basis.grid, o.tractions, o.boundary);

@@ -4,9 +4,12 @@
 ///   L = sum_I v*_I (x) grad N_Ip,   sigma <- material(sigma, L dt),   V <- V det(I + dt L) or V exp(dt tr
 ///   L), x_p <- x_p + dt sum_I N_Ip v_I   (v_I: before the re-map; v*_I: after it).
 ///
-/// Reads both nodal velocities; writes positions, stresses and volumes.
+/// Reads both nodal velocities; writes positions, stresses and volumes, and the state of a material that has
+/// one.
 #pragma once
 
+#include <stdexcept>
+#include <string>
 #include <vector>
 #include <vsb/physics/material.hpp>
 #include <vsb/views/nodes.hpp>
@@ -23,17 +26,30 @@ struct UpdateStress {
   Basis basis;
   Material material;
   Volume volume;
-  Real dt;  ///< s
+  Real dt;               ///< s
+  int state_offset = 0;  ///< of Body
 
   KOKKOS_FUNCTION void operator()(int p) const {
     const auto x = particles.position_of(p);
     const auto shape = basis.shape(x);
     const auto L = shape.gradient(nodes.remapped_velocity);
     const auto v = shape.interpolate(nodes.velocity);
-    const auto sigma = material.advance(particles.stress_of(p), L, dt);
+    const auto sigma = advance(p, L);
     for (int c = 0; c < SymmetricTensor<Dim, Real>::size; ++c) particles.cauchy_stress(p, c) = sigma[c];
     particles.volume(p) = volume(particles.volume(p), L, dt);
     for (int i = 0; i < Dim; ++i) particles.position(p, i) = x[i] + dt * v[i];
+  }
+
+  KOKKOS_FORCEINLINE_FUNCTION SymmetricTensor<Dim, Real> advance(int p, const Matrix<Dim, Real>& L) const {
+    constexpr int remembered = Material::template state_size<Dim>();
+    if constexpr (remembered == 0) {
+      return material.advance(particles.stress_of(p), L, dt);
+    } else {
+      auto state = particles.template row<remembered>(particles.material_state, p + state_offset);
+      const auto sigma = material.advance(particles.stress_of(p), state, L, dt);
+      for (int c = 0; c < remembered; ++c) particles.material_state(p + state_offset, c) = state[c];
+      return sigma;
+    }
   }
 };
 
@@ -44,22 +60,47 @@ template <class Real>
 struct Body {
   int first, last;
   Material<Real> material;
+  int state_offset = 0;  ///< the state of particle p is row p + state_offset of Particles::material_state
 };
 
-/// Updates the particles of all bodies; dt in s.
+/// Numbers that a material remembers per particle.
+template <int Dim, class Real>
+int state_size(const Material<Real>& material) {
+  return std::visit([](const auto& m) { return m.template state_size<Dim>(); }, material);
+}
+
+/// Throws std::invalid_argument where the particles lack the state that a body's material remembers.
+template <int Dim, class Real, class Device>
+void check_material_state(const Particles<Dim, Real, Device>& particles, const Body<Real>& body) {
+  const int columns = state_size<Dim>(body.material), first = body.first + body.state_offset,
+            last = body.last + body.state_offset;
+  const auto& state = particles.material_state;
+  if (columns == 0 || body.first == body.last ||
+      (first >= 0 && last <= static_cast<int>(state.extent(0)) &&
+       columns <= static_cast<int>(state.extent(1))))
+    return;
+  throw std::invalid_argument("vsb::Particles: material_state is " + std::to_string(state.extent(0)) + " x " +
+                              std::to_string(state.extent(1)) + "; a body's material needs rows " +
+                              std::to_string(first) + " to " + std::to_string(last - 1) + " with " +
+                              std::to_string(columns) + " columns");
+}
+
+/// Updates the particles of all bodies; dt in s. Throws as check_material_state does.
 template <class Exec, class Basis, int Dim, class Real, class Device>
 void update_stress(const Exec& exec, const Particles<Dim, Real, Device>& particles,
                    const Nodes<Dim, Real, Device>& nodes, const std::vector<Body<Real>>& bodies,
                    const Basis& basis, const VolumeUpdate& volume_update, Real dt) {
-  for (const auto& body : bodies)
+  for (const auto& body : bodies) {
+    check_material_state(particles, body);
     std::visit(
         [&](const auto& material, const auto& volume) {
           using Functor = kernel::UpdateStress<Basis, std::decay_t<decltype(material)>,
                                                std::decay_t<decltype(volume)>, Dim, Real, Device>;
           Kokkos::parallel_for("vsb::update_stress", Kokkos::RangePolicy<Exec>(exec, body.first, body.last),
-                               Functor{particles, nodes, basis, material, volume, dt});
+                               Functor{particles, nodes, basis, material, volume, dt, body.state_offset});
         },
         body.material, volume_update);
+  }
 }
 
 }  // namespace vsb

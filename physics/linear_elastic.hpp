@@ -27,6 +27,12 @@ struct LinearElastic {
     return {static_cast<Real>(E * nu / ((1 + nu) * (1 - 2 * nu))), static_cast<Real>(E / (2 * (1 + nu)))};
   }
 
+  /// Numbers to remember per particle.
+  template <int Dim>
+  static constexpr int state_size() {
+    return 0;
+  }
+
   /// M of Eq. (29), Pa: stiffness in uniaxial strain.
   KOKKOS_FUNCTION Real constrained_modulus() const { return lambda + 2 * shear_modulus; }
 

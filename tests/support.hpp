@@ -50,7 +50,7 @@ void edit(const ParticleBlock<Dim, Real, Device>& block, const Change& change) {
   Kokkos::fence();
   const auto host = host_copy(block);
   change(host.particles);
-  Kokkos::deep_copy(block.block, host.block);
+  copy_to_device(host, block);
 }
 
 template <int Dim, class Real>

@@ -22,11 +22,14 @@ struct Particles {
   using Scalars = Kokkos::View<Real*, Kokkos::LayoutStride, Device>;
   using Fields = Kokkos::View<Real**, Kokkos::LayoutStride, Device>;
 
-  Fields position;       ///< [particle][Dim], m
-  Fields velocity;       ///< [particle][Dim], m/s
-  Scalars mass;          ///< [particle], kg (kg/m^2 in 1D, kg/m in 2D: per unit of the directions left out)
-  Scalars volume;        ///< [particle], m^3 (m in 1D, m^2 in 2D)
-  Fields cauchy_stress;  ///< [particle][3, 4 or 6], Pa, tension positive; order xx yy zz xy yz xz
+  Fields position;        ///< [particle][Dim], m
+  Fields velocity;        ///< [particle][Dim], m/s
+  Scalars mass;           ///< [particle], kg (kg/m^2 in 1D, kg/m in 2D: per unit of the directions left out)
+  Scalars volume;         ///< [particle], m^3 (m in 1D, m^2 in 2D)
+  Fields cauchy_stress;   ///< [particle][3, 4 or 6], Pa, tension positive; order xx yy zz xy yz xz
+  Fields material_state;  ///< [row][columns]: what a material remembers beside the stress; all zero where it
+                          ///< has seen no deformation. No rows unless a body's material needs them, and then
+                          ///< for the particles of such bodies alone (Body::state_offset)
 
   /// Views a caller's array as a field without owning it: entry (p, c) is at
   /// first[p * row_stride + c * column_stride]. Strides count numbers, not bytes.
@@ -85,7 +88,8 @@ int padded_rows(int n) {
 template <int Dim, class Real, class Device>
 struct ParticleBlock {
   using Block = Kokkos::View<Real**, Kokkos::LayoutLeft, Device>;
-  Block block;  ///< [padded particle][columns]
+  Block block;        ///< [padded particle][columns]
+  Block state_block;  ///< [padded row][columns] of material_state; empty without it
   Particles<Dim, Real, Device> particles;
 
   ParticleBlock() = default;
@@ -103,6 +107,11 @@ struct ParticleBlock {
     particles.volume = Kokkos::subview(block, rows, column++);
     particles.cauchy_stress = fields(Particles<Dim, Real, Device>::stress_size);
   }
+  /// Adds a block of material states with the given number of rows in use.
+  void set_state(Block b, int rows) {
+    state_block = std::move(b);
+    particles.material_state = Kokkos::subview(state_block, std::make_pair(0, rows), Kokkos::ALL());
+  }
   static constexpr int columns() { return 2 * Dim + 2 + Particles<Dim, Real, Device>::stress_size; }
 };
 
@@ -115,11 +124,35 @@ ParticleBlock<Dim, Real, Device> allocate_particles(int n) {
       n);
 }
 
+/// Gives the particles `rows` rows of material state, all zero.
+template <int Dim, class Real, class Device>
+void allocate_material_state(ParticleBlock<Dim, Real, Device>& block, int rows, int columns) {
+  using Block = typename ParticleBlock<Dim, Real, Device>::Block;
+  block.set_state(Block("vsb::material_state", static_cast<size_t>(padded_rows<Real>(rows)),
+                        static_cast<size_t>(columns)),
+                  rows);
+}
+
 /// A copy in host memory (the same memory where the device is the host).
 template <int Dim, class Real, class Device>
 ParticleBlock<Dim, Real, Kokkos::HostSpace> host_copy(const ParticleBlock<Dim, Real, Device>& source) {
-  return {Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), source.block, "vsb::particles on host"),
-          source.particles.count()};
+  const Kokkos::HostSpace host;
+  ParticleBlock<Dim, Real, Kokkos::HostSpace> copy(
+      Kokkos::create_mirror_view_and_copy(host, source.block, "vsb::particles on host"),
+      source.particles.count());
+  if (source.state_block.size() > 0)
+    copy.set_state(
+        Kokkos::create_mirror_view_and_copy(host, source.state_block, "vsb::material_state on host"),
+        static_cast<int>(source.particles.material_state.extent(0)));
+  return copy;
+}
+
+/// Brings back what host_copy gave.
+template <int Dim, class Real, class Device>
+void copy_to_device(const ParticleBlock<Dim, Real, Kokkos::HostSpace>& from,
+                    const ParticleBlock<Dim, Real, Device>& to) {
+  Kokkos::deep_copy(to.block, from.block);
+  if (to.state_block.size() > 0) Kokkos::deep_copy(to.state_block, from.state_block);
 }
 
 }  // namespace vsb

@@ -187,6 +187,7 @@ RunResult run(const Scene& scene, const RunOptions& options) {
   figures.cut = simulation->cut_volume();
   figures.particles = simulation->particle_count();
   figures.boundary_nodes = simulation->boundary_nodes();
+  figures.void_filter = simulation->void_filter();
   figures.state_bytes = simulation->state_bytes();
   results.write_summary(summary_json(scene, figures));
   results.remove_checkpoint();

@@ -55,11 +55,16 @@ struct BalanceReport {
   Point exact_force{}, exact_torque{};  ///< of the tractions on the initial surface of the bodies
 };
 
+/// What the void filter keeps from the boundary; see kernels/filter_voids.hpp.
+struct VoidFilterReport {
+  int false_voids = 0, dropped_nodes = 0;
+};
+
 /// The complete state of a run, bit by bit, for checkpoints.
 struct SavedState {
   long long step = 0;
   size_t bytes_per_number = 0;
-  std::vector<unsigned char> particles;  ///< raw columns without padding, and the surface points
+  std::vector<unsigned char> particles;  ///< raw columns without padding, surface points, void filter
 };
 
 class Simulation {
@@ -71,6 +76,8 @@ class Simulation {
   virtual int boundary_nodes() const = 0;
   /// Of the bodies with cut lattices, at the start.
   virtual CutVolume cut_volume() const = 0;
+  /// Of the boundary nodes of the moment; zeros without the filter.
+  virtual VoidFilterReport void_filter() const = 0;
   /// Memory of particles, nodes and occupancy.
   virtual size_t state_bytes() const = 0;
 

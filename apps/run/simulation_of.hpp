@@ -13,7 +13,9 @@
 #include "run/basis_of.hpp"
 #include "run/grid_lines.hpp"
 #include "run/loads.hpp"
+#include "run/material_of.hpp"
 #include "run/simulation.hpp"
+#include "run/void_seeds.hpp"
 
 namespace vsb::app {
 
@@ -31,6 +33,10 @@ class SimulationOf final : public Simulation {
     fill_particles();
     state_ = make_state(block_.particles, basis_);
     if (scene.method.fill_criterion > 0) set_fill_criterion(state_.occupancy, scene.method.fill_criterion);
+    if (scene.method.void_filter) {
+      set_void_filter(state_.occupancy, basis_);
+      remove_body_cells<Device>(scene, basis_.grid, state_.occupancy.cells.outside);
+    }
     fix_faces();
     declare_tractions();
     place_surface_points();
@@ -52,15 +58,23 @@ class SimulationOf final : public Simulation {
   int boundary_nodes() const override { return state_.occupancy.boundary_node_count; }
 
   CutVolume cut_volume() const override { return placed_.cut; }
+  VoidFilterReport void_filter() const override {
+    const auto& o = state_.occupancy;
+    if (!scene_.method.void_filter) return {};
+    const auto effect =
+        void_filter_effect(exec_, state_.particles, o.cells, basis_.grid, o.tractions, o.boundary_node_count);
+    return {effect.false_voids, effect.dropped_nodes};
+  }
 
   size_t state_bytes() const override {
     const auto& o = state_.occupancy;
     const auto& n = state_.nodes;
     const auto bytes = [](const auto&... views) { return (... + (views.span() * sizeof(*views.data()))); };
-    return bytes(block_.block, n.sums, n.acceleration, n.velocity, n.remapped_velocity, n.fixed_components,
-                 o.bins.bin, o.bins.order, o.bins.offset, o.bins.cursor, o.bins.slot, o.bins.occupied,
-                 o.cells.occupied, o.cells.exterior, o.cells.boundary, o.cells.underfilled, o.tractions,
-                 o.boundary, state_.sums_workspace.particles.bin_sums, state_.remap_workspace.bin_sums) +
+    return bytes(block_.block, block_.state_block, n.sums, n.acceleration, n.velocity, n.remapped_velocity,
+                 n.fixed_components, o.bins.bin, o.bins.order, o.bins.offset, o.bins.cursor, o.bins.slot,
+                 o.bins.occupied, o.cells.occupied, o.cells.exterior, o.cells.boundary, o.cells.underfilled,
+                 o.cells.outside, o.tractions, o.boundary, state_.sums_workspace.particles.bin_sums,
+                 state_.remap_workspace.bin_sums) +
            owned_basis_.bytes() + placed_.position.size() * sizeof(placed_.position[0]);
   }
 
@@ -167,12 +181,13 @@ class SimulationOf final : public Simulation {
   }
 
   SavedState save() const override {
-    const auto host = host_copy(block_).block;
-    const size_t n = placed_.position.size(), column_bytes = n * sizeof(Real);
-    SavedState saved{step_, sizeof(Real), std::vector<unsigned char>(saved_bytes(host.extent(1)))};
+    const auto host = host_copy(block_);
+    SavedState saved{step_, sizeof(Real), std::vector<unsigned char>(saved_bytes())};
     unsigned char* to = saved.particles.data();
-    for (size_t c = 0; c < host.extent(1); ++c, to += column_bytes)
-      std::memcpy(to, &host(0, c), column_bytes);
+    for_each_column(host, [&](const Real* column, size_t bytes) {
+      std::memcpy(to, column, bytes);
+      to += bytes;
+    });
     for (const auto& field : {state_.surface.position, state_.surface.area}) {
       const auto on_host =
           Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), field, "vsb::surface on host");
@@ -180,18 +195,22 @@ class SimulationOf final : public Simulation {
       std::memcpy(to, on_host.data(), field.span() * sizeof(Real));
       to += field.span() * sizeof(Real);
     }
+    const auto outside = Kokkos::create_mirror_view_and_copy(
+        Kokkos::HostSpace(), state_.occupancy.cells.outside, "vsb::outside on host");
+    if (outside.span() > 0) std::memcpy(to, outside.data(), outside.span() * sizeof(std::uint64_t));
     return saved;
   }
 
   void restore(const SavedState& saved) override {
-    auto host = host_copy(block_).block;
-    const size_t n = placed_.position.size(), column_bytes = n * sizeof(Real);
-    if (saved.bytes_per_number != sizeof(Real) || saved.particles.size() != saved_bytes(host.extent(1)))
+    if (saved.bytes_per_number != sizeof(Real) || saved.particles.size() != saved_bytes())
       throw SetupError("the checkpoint belongs to another scene: its particles do not fit this one's");
+    const auto host = host_copy(block_);
     const unsigned char* from = saved.particles.data();
-    for (size_t c = 0; c < host.extent(1); ++c, from += column_bytes)
-      std::memcpy(&host(0, c), from, column_bytes);
-    Kokkos::deep_copy(block_.block, host);
+    for_each_column(host, [&](Real* column, size_t bytes) {
+      std::memcpy(column, from, bytes);
+      from += bytes;
+    });
+    copy_to_device(host, block_);
     for (const auto& field : {state_.surface.position, state_.surface.area}) {
       if (field.span() == 0) continue;
       const auto on_host = Kokkos::create_mirror_view(field);
@@ -199,16 +218,36 @@ class SimulationOf final : public Simulation {
       from += field.span() * sizeof(Real);
       Kokkos::deep_copy(field, on_host);
     }
+    if (const auto& outside = state_.occupancy.cells.outside; outside.span() > 0) {
+      const auto on_host = Kokkos::create_mirror_view(outside);
+      std::memcpy(on_host.data(), from, outside.span() * sizeof(std::uint64_t));
+      Kokkos::deep_copy(outside, on_host);
+      mark_anew(state_.occupancy);
+    }
     step_ = saved.step;
     if (update_occupancy(exec_, state_.particles, state_.occupancy, basis_) >= 0)
       throw SetupError("the checkpoint belongs to another scene: it has particles outside this one's grid");
   }
 
  private:
-  /// Bytes of a saved state: the columns of the particles, and positions and areas of the surface points.
-  size_t saved_bytes(size_t columns) const {
-    return (columns * placed_.position.size() + state_.surface.position.span() + state_.surface.area.span()) *
-           sizeof(Real);
+  /// Visits the columns of the particles and of their material states: first value, bytes without padding.
+  template <class Visit>
+  static void for_each_column(const ParticleBlock<Dim, Real, Kokkos::HostSpace>& host, const Visit& visit) {
+    const auto columns = [&](const auto& block, size_t rows) {
+      for (size_t c = 0; c < block.extent(1); ++c) visit(&block(0, c), rows * sizeof(Real));
+    };
+    columns(host.block, host.particles.mass.extent(0));
+    columns(host.state_block, host.particles.material_state.extent(0));
+  }
+
+  /// Bytes of a saved state: the columns of the particles and of their material states, positions and areas
+  /// of the surface points, and the outside of the void filter.
+  size_t saved_bytes() const {
+    const auto& state = block_.particles.material_state;
+    return (block_.block.extent(1) * placed_.position.size() + state.extent(0) * state.extent(1) +
+            state_.surface.position.span() + state_.surface.area.span()) *
+               sizeof(Real) +
+           state_.occupancy.cells.outside.span() * sizeof(std::uint64_t);
   }
 
   using Device = ExecutionSpace::device_type;
@@ -242,11 +281,23 @@ class SimulationOf final : public Simulation {
         p.volume(i) = static_cast<Real>(placed_.volume[i]);
         p.mass(i) = static_cast<Real>(body.density * placed_.volume[i]);
       }
-      bodies_.push_back(
-          {range.first, range.last,
-           LinearElastic<Real>::from_young(body.material.youngs_modulus, body.material.poisson_ratio)});
+      bodies_.push_back({range.first, range.last, material_of<Real>(body.material)});
     }
     Kokkos::deep_copy(block_.block, host.block);
+    allocate_states();
+  }
+
+  /// Rows of material state for the particles of the bodies that need them, body after body.
+  void allocate_states() {
+    int rows = 0, columns = 0;
+    for (auto& body : bodies_) {
+      const int needed = state_size<Dim>(body.material);
+      if (needed == 0) continue;
+      body.state_offset = rows - body.first;
+      rows += body.last - body.first;
+      columns = std::max(columns, needed);
+    }
+    if (rows > 0) allocate_material_state(block_, rows, columns);
   }
 
   void fix_faces() {

@@ -45,6 +45,10 @@ std::vector<std::pair<std::string, double>> named_figures(const Scene& scene, co
                              {"time", static_cast<double>(f.steps) * scene.time.dt},
                              {"force_ratio", f.balance.force_ratio},
                              {"energy_ratio", f.balance.energy_ratio}});
+  if (scene.method.void_filter) {
+    named.emplace_back("false_voids", f.void_filter.false_voids);
+    named.emplace_back("dropped_nodes", f.void_filter.dropped_nodes);
+  }
   for (size_t c = 0; c < static_cast<size_t>(scene.dimension); ++c)
     for (const auto& [name, force] :
          {std::pair("net_force_", &f.balance.net_force), std::pair("exact_force_", &f.balance.exact_force)})
@@ -89,6 +93,9 @@ std::string summary_json(const Scene& scene, const RunFigures& f) {
   if (f.cut.particles > 0)
     summary.insert("cut_bodies", toml::table{{"volume", f.cut.particles + f.cut.dropped},
                                              {"particle_volume", f.cut.particles}});
+  if (scene.method.void_filter)
+    summary.insert("void_filter", toml::table{{"false_voids", f.void_filter.false_voids},
+                                              {"dropped_nodes", f.void_filter.dropped_nodes}});
   std::ostringstream out;
   out << toml::json_formatter{summary} << "\n";
   return out.str();
@@ -141,6 +148,9 @@ void print_report(const Scene& scene, const RunFigures& f) {
   const auto& b = f.balance;
   fmt::print("force ratio {:.2e}, energy ratio {:.2e}\n", b.force_ratio, b.energy_ratio);
   print_resultant(scene, b, "");
+  if (scene.method.void_filter)
+    fmt::print("void filter: {} false voids inside the bodies, {} boundary nodes dropped, {} left\n",
+               f.void_filter.false_voids, f.void_filter.dropped_nodes, f.boundary_nodes);
 }
 
 }  // namespace vsb::app

@@ -19,6 +19,7 @@ struct RunFigures {
   int particles = 0, boundary_nodes = 0;
   size_t state_bytes = 0;
   CutVolume cut;
+  VoidFilterReport void_filter;
   BalanceReport balance;
   std::string state_hash;  ///< of the particles' bits at the end
   std::vector<std::pair<std::string, double>> errors;

@@ -39,7 +39,14 @@ struct FaceSpec {
   std::array<std::array<unsigned char, 2>, 3> fixed{};  ///< [logical axis][0: lower face, 1: upper]
 };
 
-struct LinearElasticSpec {
+/// How stress follows from deformation.
+enum class MaterialLaw {
+  linear_elastic,  ///< rate form, physics/linear_elastic.hpp
+  hencky           ///< from the deformation gradient, physics/hencky.hpp
+};
+
+struct ElasticSpec {
+  MaterialLaw law;
   double youngs_modulus, poisson_ratio;
 };
 
@@ -50,7 +57,7 @@ struct BodySpec {
   Jitter jitter;
   BoundaryBoxes boundary = BoundaryBoxes::keep;
   double density = 0;  ///< kg/m^3
-  LinearElasticSpec material{};
+  ElasticSpec material{};
   Affine<Stress6> stress;
   Affine<Point> velocity;  ///< m/s
 };
@@ -98,6 +105,7 @@ struct MethodSpec {
   std::string volume_update, scatter;
   int cell_gauss_points = 1;  ///< of the original virtual stress boundary method, per direction
   double fill_criterion = 0;  ///< tau, see kernels/mark_underfilled_cells.hpp; 0: off
+  bool void_filter = false;   ///< see kernels/filter_voids.hpp
   bool allow_particles_on_grid_lines = false;
 };
 
@@ -110,6 +118,7 @@ struct OutputSpec {
 
 struct ColumnComparison {
   double length, traction;
+  bool printed_solution;  ///< whether e_u, against (A1), which is for small strain, is among the norms
 };
 struct CylinderComparison {
   double inner_radius, outer_radius, pressure;

@@ -208,7 +208,8 @@ class StudyReader {
     StudyCase c;
     r.allow_only(with_inherited({"axis", "label", "fine", "expect_failure", "expect", "published"}));
     const auto& place = read_place(r, c, series.cases.size());
-    c.directory = fmt::format("cases/{}_{}", slug(series.name), slug(c.text));
+    const char* sign = !study_.axis.labels && c.axis < 0 ? "minus-" : "";  // which slug leaves out
+    c.directory = fmt::format("cases/{}_{}{}", slug(series.name), sign, slug(c.text));
     for (const auto& other : series.cases)
       if (other.directory == c.directory || (!study_.axis.labels && other.axis == c.axis))
         r.fail(place, study_.axis.labels ? "label" : "axis", "the series has this case already");

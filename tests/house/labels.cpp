@@ -60,7 +60,7 @@ template <int Dim>
 void run_everything(Scatter strategy) {
   const auto grid = make_grid<Dim, double>({{8, 8, 8}});
   const LinearBasis<Dim, double> basis{grid};
-  const auto block = allocate_particles<Dim, double, Device>(64);
+  auto block = allocate_particles<Dim, double, Device>(64);
   edit(block, [&](const auto& particles) {
     Random random(81);
     for (int p = 0; p < 64; ++p) {
@@ -69,11 +69,13 @@ void run_everything(Scatter strategy) {
       particles.mass(p) = particles.volume(p) = 1;
     }
   });
+  allocate_material_state(block, 32, Dim * Dim);
   auto state = make_state(block.particles, basis);
   Kokkos::deep_copy(state.occupancy.tractions, 1u);
   set_fill_criterion(state.occupancy, 0.1);
+  set_void_filter(state.occupancy, basis);
   const std::vector<Body<double>> bodies{{0, 32, LinearElastic<double>::from_young(1, 0.3)},
-                                         {32, 64, LinearElastic<double>::from_young(2, 0.3)}};
+                                         {32, 64, Hencky<double>::from_young(2, 0.3), -32}};
   UniformVirtualStress<Dim, double> pressure;
   pressure.count = 1;
   pressure.stress[0] = pressure_stress<Dim>(1e-3);
@@ -99,6 +101,7 @@ void run_everything(Scatter strategy) {
   edit(block, [](const auto& particles) { particles.volume(0) = -1; });
   REQUIRE(find_invalid(Exec(), block.particles).particle == 0);
   const Kokkos::View<unsigned char*, Device> flag("vsb::flag", 64);
+  void_filter_effect(Exec(), block.particles, state.occupancy.cells, grid, state.occupancy.tractions, 0);
   flag_boundary_particles(Exec(), block.particles, state.occupancy.boundary, basis, flag);
 }
 
@@ -120,13 +123,26 @@ TEST_CASE("every label starts with vsb::") {
     CHECK(in_order(report));
   }
   // The listener did listen.
-  for (const char* report :
-       {"region: vsb::step", "for: vsb::particles_to_grid", "for: vsb::particles_to_grid/nodes",
-        "reduce: vsb::locate_particles", "reduce: vsb::mark_boundary_nodes",
-        "reduce: vsb::mark_underfilled_cells", "for: vsb::add_underfilled_cells", "reduce: vsb::find_invalid",
-        "scan: vsb::scan_offsets", "for: vsb::update_stress", "for: vsb::surface_force",
-        "for: vsb::move_surface_points", "for: vsb::subtract_cell_virtual_stress", "for: vsb::node_balance",
-        "allocation: vsb::particles", "allocation: vsb::bin_sums"}) {
+  for (const char* report : {"region: vsb::step",
+                             "for: vsb::particles_to_grid",
+                             "for: vsb::particles_to_grid/nodes",
+                             "reduce: vsb::locate_particles",
+                             "reduce: vsb::mark_boundary_nodes",
+                             "reduce: vsb::mark_underfilled_cells",
+                             "for: vsb::add_underfilled_cells",
+                             "for: vsb::keep_outside_cells",
+                             "reduce: vsb::flood_voids",
+                             "reduce: vsb::count_false_voids",
+                             "allocation: vsb::material_state",
+                             "reduce: vsb::find_invalid",
+                             "scan: vsb::scan_offsets",
+                             "for: vsb::update_stress",
+                             "for: vsb::surface_force",
+                             "for: vsb::move_surface_points",
+                             "for: vsb::subtract_cell_virtual_stress",
+                             "for: vsb::node_balance",
+                             "allocation: vsb::particles",
+                             "allocation: vsb::bin_sums"}) {
     CAPTURE(report);
     CHECK(seen.count(report) == 1);
   }
