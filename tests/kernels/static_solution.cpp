@@ -455,12 +455,14 @@ TEST_CASE("a load without support is found, with what is missing") {
   const auto sliding = body.unsupported();
   REQUIRE(sliding.found);
   CHECK_THAT(sliding.force[1], WithinRel(-90., 1e-12));
-  // A hinge at a corner leaves the turn about it: 90 N at 1.5 m. As a force and a torque about the middle
-  // that no force at the hinge contributes to, it is less than the weight.
+  // A hinge at (2, 5) leaves the turn about it, which moves the middle by (1.5, 1.5) and a point at the
+  // body's size of sqrt(4.5) from it by sqrt(4.5) more: m = (1.5, 1.5, sqrt(4.5)), |m|^2 = 9. The weight does
+  // -90 * 1.5 on it, so that -15 m is left.
   body.fix([](const auto& ijk) { return ijk[0] == 2 && ijk[1] == 5 ? 3 : 0; });
   const auto swinging = body.unsupported();
   REQUIRE(swinging.found);
-  CHECK(swinging.force[1] > -90);
+  for (int i = 0; i < 2; ++i) CHECK_THAT(swinging.force[i], WithinRel(-22.5, 1e-12));
+  CHECK_THAT(swinging.torque[2], WithinRel(-15 * 4.5, 1e-12));
   // Above the middle it holds; the nodes are at 2, ..., 5, so two of them do it.
   body.fix([](const auto& ijk) { return (ijk[0] == 3 || ijk[0] == 4) && ijk[1] == 5 ? 3 : 0; });
   CHECK_FALSE(body.unsupported().found);

@@ -75,17 +75,20 @@ class Agreement(StaticTest):
             self.assertEqual(static["boundary_nodes"], explicit["boundary_nodes"])
 
     def test_every_imposition_and_the_mapped_grid(self):
-        short = ("--set", "grid.spacing=0.5", "--set", "method.damping=0.2")
+        # The two differ by the order of the strain; a hundredth of the load leaves strains of 1e-6.
+        light = [s for key in ("traction[0].pressure=1e3", "compare.pressure=1e3", "method.damping=0.2",
+                               "time.until_static.force_ratio=1e-9", "time.until_static.energy_ratio=1e-16") for s in ("--set", key)]
+        short = (*light, "--set", "grid.spacing=0.5")
         cases = [("cylinder", (*short, "--set", f'traction[0].imposition="{i}"', *more)) for i, more in
-                 (("virtual_stress_original", ()), ("boundary_particles", ()),
+                 (("virtual_stress", ()), ("virtual_stress_original", ()), ("boundary_particles", ()),
                   ("material_points", ("--set", "traction[0].layer.disc={center=[0.0,0.0],radius=1.3}")))]
-        cases.append(("cylinder-polar", ("--set", "method.damping=0.2", "--set", "time.kappa=1.0")))
+        cases.append(("cylinder-polar", (*light, "--set", "time.kappa=1.0")))
         for scene, arguments in cases:
             with self.subTest(scene=scene, arguments=arguments):
                 explicit = self.run_scene(scene, *arguments, out="explicit")
                 static = self.static(scene, *arguments, out="static")
-                for name in ("e_rr", "e_tt"):
-                    self.assertAlmostEqual(static["errors"][name] / explicit["errors"][name], 1, delta=2e-3)
+                for name, error in static["errors"].items():
+                    self.assertAlmostEqual(error / explicit["errors"][name], 1, delta=2e-4, msg=name)
 
     def test_columns(self):
         for scene in ("column", "column-2d", "column-3d", "column-graded"):
@@ -162,7 +165,8 @@ class Refusals(StaticTest):
         free = self.write(FREE)
         self.assertGreater(self.static(free)["iterations"], 0)  # in balance
         pushed = self.refuse(2, free, "--set", "traction[0].surface.box={lower=[-9.0,-9.0],upper=[0.0,9.0]}")
-        self.assertRegex(pushed, r"--static: no support takes up a force of \(3\.\d+e\+04, [^)]*\) N and a torque of")
+        # 10 kPa on a diameter of 4 m; the free lattice of squares is not quite symmetric, so there is some torque.
+        self.assertRegex(pushed, r"--static: no support takes up a force of \(4e\+04, [^)]*\) N and a torque of \(0, 0, -?\d[^)]*\) N m")
         self.assertIn("'faces'", pushed)
         self.refuse(2, free, "--set", "gravity=[0.0,-9.81]")
         self.static(free, "--set", "gravity=[0.0,-9.81]", "--set", "faces.y_min=\"fixed\"", "--set", "grid.lower=[-3.1,-1.9]",
@@ -187,7 +191,7 @@ class Refusals(StaticTest):
 
     def test_bad_keys_and_command_lines(self):
         for value, word in (("residual=0", "> 0"), ("residual=1.0", "< 1"), ("residual=\"small\"", "(a string)"),
-                            ("max_iterations=0", ">= 1"), ("max_iterations=1.5", "integer"), ("residuum=1e-8", "did you mean 'residual'")):
+                            ("max_iterations=0", "from 1 to"), ("max_iterations=1.5", "integer"), ("residuum=1e-8", "did you mean 'residual'")):
             for command in (("check",), ("run",)):
                 done = vsb(*command, SCENES / "column.toml", "--set", f"static.{value}")
                 self.assertEqual(done.returncode, 2, value)
@@ -214,7 +218,7 @@ class Studies(StaticTest):
         case = [{ label = "explicit", expect = { iterations = { lowest = 0, highest = 0 } } },
                 { label = "static", static = true, expect = { steps = { lowest = 0, highest = 0 }, iterations = { lowest = 10 } } },
                 { label = "too short", static = true, set = ["static.max_iterations=3"], expect_failure = "not static after 3 iterations" },
-                { label = "no support", static = true, set = ["faces.x_min=\\"open\\"", "grid.lower=[-2.0,0.0]"], expect_failure = "no support" }]
+                { label = "no support", static = true, set = ["faces.x_min=\\"open\\"", "grid.lower=[-6.0,0.0]", "traction[0].surface={box={lower=[0.0,0.0],upper=[3.0,3.0]}}"], expect_failure = "no support" }]
         [[relation]]
         title = "the same hoop stress"
         figure = "e_tt"
