@@ -115,11 +115,9 @@ int main(int argc, char** argv) {
   run->add_flag("--quiet", options.quiet, "Print errors only");
   run->add_flag("--resume", options.resume,
                 "Continue from the checkpoint in the results' directory, if there is one");
-  run->add_flag(
-         "--static", options.static_solution,
-         "Solve for the static state under the final loads (linear elastic, small strain) in place of time "
-         "steps")
-      ->excludes("--resume");
+  run->add_flag("--static", options.static_solution,
+                "Solve for the static state under the final loads (linear elastic, small strain) in place of "
+                "time steps");
 
   auto* check =
       app.add_subcommand("check", "Print the resolved scene with all defaults, and what it would cost");
@@ -163,6 +161,8 @@ int main(int argc, char** argv) {
       };
       return run_study(cases, study_options);
     }
+    if (options.static_solution && options.resume)
+      throw SceneError("--static takes no steps, so there is none to --resume from; give one of the two");
     const Scene scene = read_scene(scene_path, overrides);
     if (options.directory.empty()) options.directory = "results/" + scene.name;
     const KokkosSession kokkos(threads_for(scene, threads));

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The static solution: the explicit run's figures, closed forms, every dimension and grid, and what it refuses."""
 import json
+import signal
+import subprocess
+import time
 import unittest
 
 import numpy as np
-from vsb_program import SCENES, ProgramTest, last_fields, vsb
+from vsb_program import PROGRAM, SCENES, ProgramTest, last_fields, vsb
 
 # A block of 4 x 3 x 2 m on rollers under a pressure from above and its own weight.
 BLOCK = """
@@ -160,6 +163,19 @@ class Output(StaticTest):
         self.assertFalse((self.folder / "column" / "column.checkpoint").exists())
 
 
+    def test_an_interrupt_leaves_nothing(self):
+        out = self.folder / "out"
+        run = subprocess.Popen([PROGRAM, "run", str(SCENES / "cylinder.toml"), "--static", "--out", str(out), "--set", "grid.spacing=0.05",
+                                "--set", "static.residual=1e-300"], stdout=subprocess.PIPE, text=True)
+        run.stdout.readline()  # the head line: it has begun
+        time.sleep(0.5)
+        run.send_signal(signal.SIGINT)
+        output, _ = run.communicate(timeout=60)
+        self.assertEqual(run.returncode, 5)
+        self.assertRegex(output, r"interrupted at iteration \d+; a static solution begins anew\n$")
+        self.assertFalse(out.exists())
+
+
 class Refusals(StaticTest):
     def test_loads_without_support(self):
         free = self.write(FREE)
@@ -199,7 +215,7 @@ class Refusals(StaticTest):
                 self.assertIn(word, done.stderr)
         done = vsb("run", SCENES / "column.toml", "--static", "--resume")
         self.assertEqual(done.returncode, 2)
-        self.assertIn("--static excludes --resume", done.stderr)
+        self.assertEqual(done.stderr, "vsb: --static takes no steps, so there is none to --resume from; give one of the two\n")
         self.assertEqual(vsb("check", SCENES / "column.toml", "--static").returncode, 2)
 
     def test_check_prints_the_keys(self):
