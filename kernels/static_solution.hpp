@@ -120,6 +120,15 @@ struct AdvanceDirection {
   }
 };
 
+/// The sum of the sizes of the force components.
+template <int Dim, class Real, class Device>
+struct ForceSize {
+  Nodes<Dim, Real, Device> nodes;
+  KOKKOS_FUNCTION void operator()(int I, Vector<1, double>& sum) const {
+    for (int i = 0; i < Dim; ++i) sum[0] += math::abs(static_cast<double>(nodes.force(I, i)));
+  }
+};
+
 /// One particle's stress in the static state; the reduction's maximum is the largest strain component.
 template <class Basis, class Material, int Dim, class Real, class Device>
 struct StrainParticle {
@@ -153,6 +162,13 @@ struct DisplaceParticle {
 };
 
 }  // namespace kernel
+
+/// The sum of the sizes of all force components in nodes.sums, N. Waits for the device.
+template <class Exec, int Dim, class Real, class Device>
+double sum_of_forces(const Exec& exec, const Nodes<Dim, Real, Device>& nodes) {
+  return ordered_sum<1, Device>(exec, "vsb::sum_of_forces", nodes.count(),
+                                kernel::ForceSize<Dim, Real, Device>{nodes})[0];
+}
 
 /// Solves K u = f for the displacements u, [node][Dim] in m. `nodes.sums` must hold the forces and masses of
 /// the particles where they are, and `bins` these particles. go_on(iteration, residual) is called before
