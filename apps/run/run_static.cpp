@@ -41,7 +41,9 @@ RunResult run_static(const Scene& scene, const RunOptions& options) {
   if (!options.progress_only) announce_discarded_checkpoint(results);
   const InterruptGuard guard;
   const bool reports = !options.quiet && !options.progress_only;
-  if (!options.progress_only) print_advice(scene);
+  Scene without_steps = scene;
+  without_steps.time.until_static.reset();  // what the way there would need is of no concern here
+  if (!options.progress_only) print_advice(without_steps);
   if (reports)
     fmt::print(
         "{}: {} particles, {} boundary nodes, static solution under the loads at {:.6g} s, results in {}\n",

@@ -150,6 +150,12 @@ class Output(StaticTest):
             self.assertAlmostEqual(summary["exact_force"][i], 1e5, delta=2e3)
             self.assertLess(abs(summary["net_force"][i] - 1e5), 0.1e5)
 
+    def test_advice_on_steps_is_not_given(self):
+        undamped = ("--set", "method.damping=0.0", "--set", "grid.spacing=0.5", "--set", "time.until_static.max_steps=1")
+        run = lambda *more: vsb("run", SCENES / "cylinder.toml", "--quiet", "--out", self.folder / "c", *undamped, *more).stderr
+        self.assertIn("damping = 0", run())
+        self.assertEqual(run("--static"), "")
+
     def test_large_strains_are_warned_about(self):
         soft = ("--set", "body[0].material.youngs_modulus=1e6")
         done = vsb("run", self.write(BLOCK), "--static", "--out", self.folder / "soft", "--quiet", *soft)
@@ -182,7 +188,7 @@ class Refusals(StaticTest):
         free = self.write(FREE)
         self.assertGreater(self.static(free)["iterations"], 0)  # in balance
         pushed = self.refuse(2, free, "--set", "traction[0].surface.box={lower=[-9.0,-9.0],upper=[0.0,9.0]}")
-        # 10 kPa on a diameter of 4 m; the free lattice of squares is not quite symmetric, so there is some torque.
+        # 10 kPa on a diameter of 4 m; the lattice is not symmetric about y = 0, so there is some torque.
         self.assertRegex(pushed, r"--static: no support takes up a force of \(4e\+04, [^)]*\) N and a torque of \(0, 0, -?\d[^)]*\) N m")
         self.assertIn("'faces'", pushed)
         self.refuse(2, free, "--set", "gravity=[0.0,-9.81]")
