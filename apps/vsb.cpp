@@ -85,7 +85,7 @@ int main(int argc, char** argv) {
       "Exit codes: 0 done, 2 bad usage or input, 3 diverged, 4 files cannot be read or written,\n"
       "5 interrupted, checkpoint written, 6 a study ran but missed an expectation, 7 not static after "
       "max_steps\n"
-      "(of until_static)."};
+      "(of until_static) or max_iterations (of static)."};
   app.require_subcommand(1);
   app.failure_message(CLI::FailureMessage::help);
 
@@ -115,6 +115,9 @@ int main(int argc, char** argv) {
   run->add_flag("--quiet", options.quiet, "Print errors only");
   run->add_flag("--resume", options.resume,
                 "Continue from the checkpoint in the results' directory, if there is one");
+  run->add_flag("--static", options.static_solution,
+                "Solve for the static state under the final loads (linear elastic, small strain) in place of "
+                "time steps");
 
   auto* check =
       app.add_subcommand("check", "Print the resolved scene with all defaults, and what it would cost");
@@ -158,6 +161,8 @@ int main(int argc, char** argv) {
       };
       return run_study(cases, study_options);
     }
+    if (options.static_solution && options.resume)
+      throw SceneError("--static takes no steps, so there is none to --resume from; give one of the two");
     const Scene scene = read_scene(scene_path, overrides);
     if (options.directory.empty()) options.directory = "results/" + scene.name;
     const KokkosSession kokkos(threads_for(scene, threads));
@@ -173,6 +178,9 @@ int main(int argc, char** argv) {
   } catch (const Diverged& error) {
     fmt::print(stderr, "vsb: diverged {}\n", error.what());
     return exit_diverged;
+  } catch (const NotStatic& error) {
+    fmt::print(stderr, "vsb: {}\n", error.what());
+    return exit_not_static;
   } catch (const FileError& error) {
     fmt::print(stderr, "vsb: {}\n", error.what());
     return exit_files;

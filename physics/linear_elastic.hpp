@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// Isotropic linear elasticity in rate form (hypoelastic, Jaumann rate):
-///   sigma <- sigma + dt (w sigma - sigma w) + lambda tr(de) I + 2 mu de.
+///   sigma <- sigma + dt (w sigma - sigma w) + lambda tr(de) I + 2 mu de,
+/// and its linear part, sigma + C : de, for static states at small strain.
 #pragma once
 
 #include <sstream>
@@ -40,8 +41,14 @@ struct LinearElastic {
   template <int Dim, class T>
   KOKKOS_FORCEINLINE_FUNCTION SymmetricTensor<Dim, T> advance(const SymmetricTensor<Dim, T>& sigma,
                                                               const Matrix<Dim, T>& L, T dt) const {
-    const auto de = strain_increment(L, dt);
-    auto s = sigma + jaumann_rotation(sigma, L, dt) + T(2 * shear_modulus) * de;
+    return strained(sigma + jaumann_rotation(sigma, L, dt), L, dt);
+  }
+
+  /// sigma + C : de, de = dt sym(L), in a frame that does not turn.
+  template <int Dim, class T>
+  KOKKOS_FORCEINLINE_FUNCTION SymmetricTensor<Dim, T> strained(const SymmetricTensor<Dim, T>& sigma,
+                                                               const Matrix<Dim, T>& L, T dt) const {
+    auto s = sigma + T(2 * shear_modulus) * strain_increment(L, dt);
     const T isotropic = T(lambda) * dt * trace(L);
     for (int i = 0; i < 3; ++i) s[i] += isotropic;
     return s;

@@ -26,7 +26,6 @@ bool Progress::due() const {
 void Progress::report(long long step, long long made, double seconds, std::optional<long long> expected,
                       double force_ratio, bool foreseen) {
   if (quiet_) return;
-  last_ = Clock::now();
   std::string line = fmt::format("step {}", step);
   if (expected) line += fmt::format(" of {}{}", foreseen ? "about " : "", *expected);
   if (made > 0 && seconds > 0) {
@@ -36,6 +35,15 @@ void Progress::report(long long step, long long made, double seconds, std::optio
       line += fmt::format(", {} left", duration_text(static_cast<double>(*expected - step) / rate));
   }
   line += fmt::format(", force ratio {:.2e}", force_ratio);
+  show(line);
+}
+
+void Progress::report_iteration(int iteration, double residual) {
+  if (!quiet_) show(fmt::format("iteration {}, relative residual {:.2e}", iteration, residual));
+}
+
+void Progress::show(const std::string& line) {
+  last_ = Clock::now();
   if (terminal_)
     fmt::print("\r{:<100}", line);
   else

@@ -22,10 +22,14 @@ class Progress {
   /// which the run will end, where one can tell; `foreseen` where that is a guess.
   void report(long long step, long long made, double seconds, std::optional<long long> expected,
               double force_ratio, bool foreseen);
+  /// The same for a static solution.
+  void report_iteration(int iteration, double residual);
   /// Ends the line on a terminal.
   void finish();
 
  private:
+  void show(const std::string& line);
+
   using Clock = std::chrono::steady_clock;
   bool quiet_, terminal_, open_line_ = false;
   int particles_;

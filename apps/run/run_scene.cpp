@@ -8,12 +8,11 @@
 #include <cmath>
 #include <optional>
 
-#include "files/results.hpp"
 #include "run/interrupt.hpp"
 #include "run/progress.hpp"
-#include "run/recovered_stress.hpp"
+#include "run/run_parts.hpp"
+#include "run/run_static.hpp"
 #include "run/scene_advice.hpp"
-#include "run/summary.hpp"
 
 namespace vsb::app {
 
@@ -34,13 +33,6 @@ long long next_stop(const Scene& scene, long long step) {
   if (scene.output.every > 0) stop = std::min(stop, multiple(scene.output.every));
   if (scene.time.until_static) stop = std::min(stop, multiple(scene.time.until_static->check_every));
   return stop;
-}
-
-/// The time from which on all loads are constant, s.
-double loads_settled_at(const Scene& scene) {
-  double t = 0;
-  for (const auto& traction : scene.tractions) t = std::max(t, traction.time.settled_at());
-  return t;
 }
 
 bool is_static(const StaticCriterion& c, const BalanceReport& b) {
@@ -75,26 +67,6 @@ class StaticForecast {
   double first_ratio_ = 0, last_ratio_ = 0;
 };
 
-/// A snapshot with the recovered stress where a field or a norm needs it.
-Snapshot take_snapshot(const Scene& scene, Simulation& simulation) {
-  const auto& fields = scene.output.fields;
-  Snapshot snapshot = simulation.snapshot();
-  if (scene.more_norms.recovered || std::count(fields.begin(), fields.end(), "recovered_stress") > 0)
-    recover_stress(scene, snapshot);
-  return snapshot;
-}
-
-void write_frames(Results& results, const Scene& scene, Simulation& simulation) {
-  simulation.check_health();
-  const Snapshot snapshot = take_snapshot(scene, simulation);
-  results.write_frame(snapshot, compare_with_exact(scene, snapshot).exact);
-  if (scene.output.grid) results.write_grid_frame(simulation.grid_snapshot(), snapshot.step, snapshot.time);
-}
-
-void print_advice(const Scene& scene) {
-  for (const auto& advice : scene_advice(scene)) fmt::print(stderr, "vsb: warning: {}\n", advice);
-}
-
 RunResult run(const Scene& scene, const RunOptions& options) {
   const auto simulation = make_simulation(scene);
   Results results(options.directory, scene);
@@ -106,12 +78,8 @@ RunResult run(const Scene& scene, const RunOptions& options) {
     } else if (!options.progress_only) {
       fmt::print(stderr, "vsb: no checkpoint in {}; starting from step 0\n", options.directory);
     }
-  } else if (const auto step = results.checkpoint_step(); step && !options.progress_only) {
-    fmt::print(
-        stderr,
-        "vsb: discarding the checkpoint of step {} in {} (with --resume the run would have gone on from "
-        "it)\n",
-        *step, options.directory);
+  } else if (!options.progress_only) {
+    announce_discarded_checkpoint(results);
   }
   const InterruptGuard guard;  // from the first file on
   results.begin(resumed_step);
@@ -182,13 +150,7 @@ RunResult run(const Scene& scene, const RunOptions& options) {
   figures.steps_timed = simulation->step() - first_step;
   figures.found_static = found_static;
   figures.balance = balance;
-  figures.state_hash = state_hash(simulation->save());
-  figures.errors = compare_with_exact(scene, take_snapshot(scene, *simulation)).errors;
-  figures.cut = simulation->cut_volume();
-  figures.particles = simulation->particle_count();
-  figures.boundary_nodes = simulation->boundary_nodes();
-  figures.void_filter = simulation->void_filter();
-  figures.state_bytes = simulation->state_bytes();
+  take_state(figures, scene, *simulation);
   results.write_summary(summary_json(scene, figures));
   results.remove_checkpoint();
   if (reports) print_report(scene, figures);
@@ -203,7 +165,7 @@ RunResult run(const Scene& scene, const RunOptions& options) {
 
 RunResult run_scene(const Scene& scene, const RunOptions& options) {
   try {
-    return run(scene, options);
+    return options.static_solution ? run_static(scene, options) : run(scene, options);
   } catch (const Diverged& error) {
     const auto hint = units_hint(scene);
     if (hint.empty()) throw;

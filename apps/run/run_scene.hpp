@@ -18,14 +18,15 @@ enum ExitCode {
   exit_files = 4,
   exit_interrupted = 5,
   exit_study_failed = 6,  ///< a study was run, but not all of its expectations are met
-  exit_not_static = 7     ///< a run until static came to its last step before it was
+  exit_not_static = 7     ///< a run until static, or a static solution, came to its last step before it was
 };
 
 struct RunOptions {
   std::string directory;  ///< where results go
   bool quiet = false;
-  bool progress_only = false;  ///< print neither head nor report: the caller does
-  bool resume = false;         ///< continue from the directory's checkpoint, if there is one
+  bool progress_only = false;    ///< print neither head nor report: the caller does
+  bool static_solution = false;  ///< solve for the static state in place of making steps
+  bool resume = false;           ///< continue from the directory's checkpoint, if there is one
 };
 
 struct RunResult {
@@ -34,7 +35,7 @@ struct RunResult {
   RunFigures figures;  ///< of an interrupted run only the steps and their time
 };
 
-/// Throws SetupError before anything is written, Diverged, FileError.
+/// Throws SetupError before anything is written, Diverged, FileError; NotStatic for a static solution.
 RunResult run_scene(const Scene& scene, const RunOptions& options);
 
 /// Prints the resolved scene and what a run of it would cost; writes no file. Throws SetupError.

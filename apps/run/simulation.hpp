@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -22,6 +23,11 @@ struct SetupError : std::runtime_error {
 
 /// A run that has become meaningless; the text names step, time, particle and field.
 struct Diverged : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// A static state that was not found; the text says how far it got.
+struct NotStatic : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
@@ -60,6 +66,15 @@ struct VoidFilterReport {
   int false_voids = 0, dropped_nodes = 0;
 };
 
+/// What solve_static found.
+struct StaticSolution {
+  int iterations = 0;
+  double residual = 1;  ///< relative; see kernels/static_solution.hpp
+  bool converged = false;
+  double largest_strain = 0;  ///< of a component
+  BalanceReport balance;      ///< at the initial positions
+};
+
 /// The complete state of a run, bit by bit, for checkpoints.
 struct SavedState {
   long long step = 0;
@@ -83,6 +98,10 @@ class Simulation {
 
   /// Makes `steps` steps. Throws Diverged when a particle leaves the grid.
   virtual void advance(long long steps) = 0;
+  /// Gives the particles of step 0 the stress and the displacement of the static state under the loads of
+  /// time t, s, where it is found. go_on(iteration, residual) may end the search. Throws SetupError where a
+  /// load has no support.
+  virtual StaticSolution solve_static(double t, const std::function<bool(int, double)>& go_on) = 0;
   /// Throws Diverged when a field of a particle is not finite or a volume is not positive.
   virtual void check_health() const = 0;
   /// The balance of the present state under the loads of the present or of a given time, s.

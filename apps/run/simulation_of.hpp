@@ -10,6 +10,8 @@
 #include <vsb/kernels/balance.hpp>
 #include <vsb/kernels/flag_boundary_particles.hpp>
 #include <vsb/kernels/health.hpp>
+#include <vsb/kernels/static_solution.hpp>
+#include <vsb/kernels/unsupported_load.hpp>
 #include "run/basis_of.hpp"
 #include "run/grid_lines.hpp"
 #include "run/loads.hpp"
@@ -87,6 +89,43 @@ class SimulationOf final : public Simulation {
       ++step_;
     }
     exec_.fence();
+  }
+
+  StaticSolution solve_static(double t, const std::function<bool(int, double)>& go_on) override {
+    loads_.set_time(scene_, t);
+    locate();
+    // What is left of an initial stress that balances the loads is round-off, which nothing need take up.
+    particles_to_grid(exec_, state_.particles, state_.occupancy.bins, state_.nodes, state_.occupancy.boundary,
+                      state_.sums_workspace.particles, basis_, NoVirtualStress{}, options_.gravity,
+                      options_.scatter);
+    const double round_off = 1e-13 * sum_of_forces(exec_, state_.nodes);
+    const int lost = with_field([&](const auto& field) {
+      return assemble_forces(exec_, state_.particles, state_.occupancy, state_.surface, state_.nodes,
+                             state_.sums_workspace, basis_, field, options_.gravity, options_.scatter);
+    });
+    if (lost >= 0) throw_lost(particle_count() + lost);
+    const typename Nodes<Dim, Real, Device>::Fields u("vsb::node_displacement",
+                                                      static_cast<size_t>(basis_.node_count()), Dim);
+    StaticResult result{0, 0, true};
+    if (sum_of_forces(exec_, state_.nodes) > round_off) {
+      const auto& wanted = scene_.static_solution;
+      refuse_unsupported(find_unsupported_load(exec_, state_.nodes, state_.occupancy.bins, basis_,
+                                               std::max(wanted.residual, 1e-11)));
+      Stiffness<Basis, Dim, Real, Device> stiffness(state_.particles, bodies_, basis_, state_.occupancy.bins,
+                                                    options_.scatter);
+      result = solve_displacement(exec_, stiffness, state_.nodes, u,
+                                  StaticOptions{wanted.residual, wanted.max_iterations}, go_on);
+    }
+    StaticSolution solution;
+    solution.iterations = result.iterations;
+    solution.residual = result.residual;
+    solution.converged = result.converged;
+    if (!result.converged) return solution;
+    solution.largest_strain = strain_particles(exec_, state_.particles, bodies_, basis_, u);
+    solution.balance = balance_under_loads_at(t);
+    displace_particles(exec_, state_.particles, basis_, u);
+    exec_.fence();
+    return solution;
   }
 
   void check_health() const override {
@@ -408,6 +447,21 @@ class SimulationOf final : public Simulation {
         }
       }
     }
+  }
+
+  static void refuse_unsupported(const UnsupportedLoad<Dim>& load) {
+    if (!load.found) return;
+    const auto list = [](const auto& vector) {
+      std::string text;
+      for (int i = 0; i < vector.size; ++i) text += fmt::format("{}{:.4g}", i == 0 ? "" : ", ", vector[i]);
+      return text;
+    };
+    throw SetupError(fmt::format(
+        "--static: no support takes up a force of ({}) N{} on the body around ({}) m, {:.2g} of its nodal "
+        "forces, so there is no static state: hold the body at a face of the grid ('faces'), or balance its "
+        "loads",
+        list(load.force), Dim > 1 ? fmt::format(" and a torque of ({}) N m", list(load.torque)) : "",
+        list(load.middle), load.share));
   }
 
   void locate() {

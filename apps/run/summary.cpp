@@ -33,8 +33,8 @@ std::string text(const Point& p) {
 }  // namespace
 
 double RunFigures::ns_per_particle_step() const {
-  return steps_timed > 0 ? 1e9 * seconds / (static_cast<double>(particles) * static_cast<double>(steps_timed))
-                         : 0;
+  const auto sweeps = static_cast<double>(steps_timed + iterations);
+  return sweeps > 0 ? 1e9 * seconds / (static_cast<double>(particles) * sweeps) : 0;
 }
 
 std::vector<std::pair<std::string, double>> named_figures(const Scene& scene, const RunFigures& f) {
@@ -42,6 +42,7 @@ std::vector<std::pair<std::string, double>> named_figures(const Scene& scene, co
   named.insert(named.end(), {{"particles", f.particles},
                              {"boundary_nodes", f.boundary_nodes},
                              {"steps", static_cast<double>(f.steps)},
+                             {"iterations", f.iterations},
                              {"time", static_cast<double>(f.steps) * scene.time.dt},
                              {"force_ratio", f.balance.force_ratio},
                              {"energy_ratio", f.balance.energy_ratio}});
@@ -73,7 +74,9 @@ std::string summary_json(const Scene& scene, const RunFigures& f) {
       {"errors", errors},
       {"particles", f.particles},
       {"boundary_nodes", f.boundary_nodes},
+      {"solution", f.static_solution ? "static" : "explicit"},
       {"steps", f.steps},
+      {"iterations", f.iterations},
       {"dt", scene.time.dt},
       {"time", static_cast<double>(f.steps) * scene.time.dt},
       {"static", f.found_static},
@@ -142,8 +145,10 @@ void print_report(const Scene& scene, const RunFigures& f) {
       fmt::print("{}\n", line);
     }
   }
-  fmt::print("{} steps in {:.3g} s: {:.4g} ns per particle and step; peak memory {:.4g} MB\n", f.steps_timed,
-             f.seconds, f.ns_per_particle_step(), static_cast<double>(peak_bytes()) / 1e6);
+  const char* sweep = f.static_solution ? "iteration" : "step";
+  fmt::print("{} {}s in {:.3g} s: {:.4g} ns per particle and {}; peak memory {:.4g} MB\n",
+             f.steps_timed + f.iterations, sweep, f.seconds, f.ns_per_particle_step(), sweep,
+             static_cast<double>(peak_bytes()) / 1e6);
   print_cut_volume(f.cut, "");
   const auto& b = f.balance;
   fmt::print("force ratio {:.2e}, energy ratio {:.2e}\n", b.force_ratio, b.energy_ratio);

@@ -12,9 +12,11 @@
 namespace vsb::app {
 
 struct RunFigures {
-  long long steps = 0;        ///< step number at the end
-  long long steps_timed = 0;  ///< steps made by this program, fewer after a resume
-  double seconds = 0;         ///< wall time of those steps alone
+  long long steps = 0;           ///< step number at the end
+  long long steps_timed = 0;     ///< steps made by this program, fewer after a resume
+  double seconds = 0;            ///< wall time of those steps alone
+  bool static_solution = false;  ///< by conjugate gradients in place of steps
+  int iterations = 0;            ///< of them
   bool found_static = false;
   int particles = 0, boundary_nodes = 0;
   size_t state_bytes = 0;
@@ -24,6 +26,7 @@ struct RunFigures {
   std::string state_hash;  ///< of the particles' bits at the end
   std::vector<std::pair<std::string, double>> errors;
 
+  /// Of a static solution: per particle and iteration.
   double ns_per_particle_step() const;
 };
 

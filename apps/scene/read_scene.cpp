@@ -284,6 +284,15 @@ TimeSpec read_time(TableReader r, const Scene& scene) {
   return t;
 }
 
+StaticSpec read_static(TableReader r) {
+  StaticSpec s;
+  r.allow_only({"residual", "max_iterations"});
+  s.residual = r.number("residual", {0, 1, true, true}, 1e-10, "relative, for vsb run --static");
+  s.max_iterations = static_cast<int>(r.integer("max_iterations", 1, 100'000'000LL, 20'000LL));
+  r.finish();
+  return s;
+}
+
 OutputSpec read_output(TableReader r) {
   static const std::vector<std::string> fields = {"id",     "displacement", "velocity",   "cauchy_stress",
                                                   "volume", "mass",         "in_boundary"};
@@ -398,7 +407,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
   ResolvedTable resolved;
   TableReader r(document, "", resolved);
   r.allow_only({"name", "title", "dimension", "precision", "gravity", "grid", "faces", "body", "traction",
-                "method", "time", "output", "compare", "published"});
+                "method", "time", "static", "output", "compare", "published"});
   Scene scene;
   scene.name = r.text("name", std::filesystem::path(path).stem().string());
   if (scene.name.empty() || scene.name.find_first_of("/\\ \t\n") != std::string::npos ||
@@ -452,6 +461,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
         *document["time"]["until_static"].node(), "time.until_static",
         "nothing loads the bodies (no traction, gravity, initial stress or velocity), so there is no static "
         "state to run to");
+  scene.static_solution = read_static(r.table("static"));
   scene.output = read_output(r.table("output"));
   scene.compare = read_comparison(r, scene.bodies.front().material, scene.more_norms);
   for (auto& table : r.tables("published")) scene.published.push_back(read_published(table, scene));

@@ -109,6 +109,12 @@ struct MethodSpec {
   bool allow_particles_on_grid_lines = false;
 };
 
+/// When the conjugate gradients of a static solution end.
+struct StaticSpec {
+  double residual = 0;  ///< relative
+  int max_iterations = 0;
+};
+
 struct OutputSpec {
   long long every = 0;  ///< steps between frames; 0: the first and the last state only
   std::vector<std::string> fields;
@@ -152,6 +158,7 @@ struct Scene {
   Point gravity{};  ///< m/s^2
   MethodSpec method;
   TimeSpec time;
+  StaticSpec static_solution;
   OutputSpec output;
   Comparison compare;
   MoreNorms more_norms;

@@ -41,6 +41,7 @@ CaseRecord read(const toml::table& file) {
   record.steps_timed = file["steps_timed"].value_or(0LL);
   record.end_time = file["end_time"].value_or(0.0);
   record.steps = file["steps"].value_or(0LL);
+  record.iterations = file["iterations"].value_or(0LL);
   record.state_hash = file["state_hash"].value_or(std::string());
   if (const auto* figures = file["figures"].as_array())
     for (const auto& item : *figures)
@@ -59,17 +60,21 @@ std::optional<double> CaseRecord::figure(const std::string& name) const {
 }
 
 double CaseRecord::ns_per_particle_step() const {
-  return steps_timed > 0 ? 1e9 * seconds / (static_cast<double>(particles) * static_cast<double>(steps_timed))
-                         : 0;
+  const auto sweeps = static_cast<double>(steps_timed + iterations);
+  return sweeps > 0 ? 1e9 * seconds / (static_cast<double>(particles) * sweeps) : 0;
 }
 
-std::optional<CaseRecord> read_case_record(const std::string& directory, const std::string& resolved) {
+std::string record_subject(const Scene& scene, bool static_solution) {
+  return (static_solution ? "# static solution\n" : "") + scene.resolved;
+}
+
+std::optional<CaseRecord> read_case_record(const std::string& directory, const std::string& subject) {
   std::error_code error;
   if (!fs::exists(path_in(directory), error)) return {};
   try {
     const toml::table file = toml::parse_file(path_in(directory));
     if (file["program"].value_or(std::string()) != program() ||
-        file["scene"].value_or(std::string()) != resolved)
+        file["scene"].value_or(std::string()) != subject)
       return {};
     CaseRecord record = read(file);
     if (record.state == CaseRecord::State::finished && !fs::exists(directory + "/summary.json", error))
@@ -80,16 +85,16 @@ std::optional<CaseRecord> read_case_record(const std::string& directory, const s
   }
 }
 
-void write_case_record(const std::string& directory, const std::string& resolved, const CaseRecord& r) {
+void write_case_record(const std::string& directory, const std::string& subject, const CaseRecord& r) {
   std::error_code error;
   fs::create_directories(directory, error);
   if (error) throw FileError(fmt::format("{}: cannot create the directory ({})", directory, error.message()));
   std::string text = fmt::format(
       "# What 'vsb study' knows of this case; without it, the case runs anew.\nprogram = {}\nstate = {}\n"
       "message = {}\nparticles = {}\nseconds = {}\nsteps_timed = {}\nend_time = {}\nsteps = {}\n"
-      "state_hash = {}\nscene = {}\n",
+      "iterations = {}\nstate_hash = {}\nscene = {}\n",
       quoted(program()), quoted(state_names[static_cast<size_t>(r.state)]), quoted(r.message), r.particles,
-      r.seconds, r.steps_timed, r.end_time, r.steps, quoted(r.state_hash), quoted(resolved));
+      r.seconds, r.steps_timed, r.end_time, r.steps, r.iterations, quoted(r.state_hash), quoted(subject));
   for (const auto& [name, value] : r.figures)
     text += fmt::format("\n[[figures]]\nname = {}\nvalue = {}\n", quoted(name), value);
   write_text_file(path_in(directory), text);

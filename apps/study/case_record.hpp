@@ -25,21 +25,27 @@ struct CaseRecord {
   long long steps_timed = 0;  ///< fewer than all where a run was killed and continued
   double end_time = 0;        ///< physical time at the end, s
   long long steps = 0;
+  long long iterations = 0;  ///< of a static solution, each about as dear as a step
   std::string state_hash;
   std::vector<std::pair<std::string, double>> figures;
 
   std::optional<double> figure(const std::string& name) const;
-  double particle_steps() const { return static_cast<double>(particles) * static_cast<double>(steps); }
+  double particle_steps() const {
+    return static_cast<double>(particles) * static_cast<double>(steps + iterations);
+  }
   double ns_per_particle_step() const;
   /// Of the whole run, from the time per step of what was timed.
   double total_seconds() const { return 1e-9 * ns_per_particle_step() * particle_steps(); }
 };
 
-/// The record in a directory; none where there is none, it is damaged, or it is of another scene (resolved,
-/// as TOML) or another version of the program.
-std::optional<CaseRecord> read_case_record(const std::string& directory, const std::string& resolved);
+/// What a record is of: the scene with all defaults, and how it is solved.
+std::string record_subject(const Scene& scene, bool static_solution);
+
+/// The record in a directory; none where there is none, it is damaged, or it is of another subject or another
+/// version of the program.
+std::optional<CaseRecord> read_case_record(const std::string& directory, const std::string& subject);
 
 /// Throws FileError.
-void write_case_record(const std::string& directory, const std::string& resolved, const CaseRecord& record);
+void write_case_record(const std::string& directory, const std::string& subject, const CaseRecord& record);
 
 }  // namespace vsb::app

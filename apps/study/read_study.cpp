@@ -25,7 +25,7 @@ struct Inherited {
   std::string scene, source, sweep;
   std::vector<std::string> set;
   std::optional<double> tolerance;
-  bool expect_static = true;
+  bool expect_static = true, static_solution = false;
 };
 
 std::vector<std::string> read_set(TableReader& r) {
@@ -41,7 +41,8 @@ std::vector<std::string> read_set(TableReader& r) {
   return set;
 }
 
-const std::vector<std::string> inherited_keys = {"scene", "source", "tolerance", "set", "expect_static"};
+const std::vector<std::string> inherited_keys = {"scene", "source",        "tolerance",
+                                                 "set",   "expect_static", "static"};
 
 std::vector<std::string> with_inherited(std::vector<std::string> keys) {
   keys.insert(keys.end(), inherited_keys.begin(), inherited_keys.end());
@@ -57,6 +58,7 @@ Inherited read_inherited(TableReader& r, Inherited outer, const fs::path& folder
   }
   outer.source = r.text("source", outer.source);
   outer.expect_static = r.boolean("expect_static", outer.expect_static);
+  outer.static_solution = r.boolean("static", outer.static_solution);
   if (r.node("tolerance")) outer.tolerance = r.number("tolerance", Range::at_least(0));
   const auto set = read_set(r);
   outer.set.insert(outer.set.end(), set.begin(), set.end());
@@ -221,6 +223,7 @@ class StudyReader {
       r.missing("scene", "the path of a scene file, here, in the series or in the study");
     c.expected_failure = r.text("expect_failure", "");
     c.expect_static = inherited.expect_static;
+    c.static_solution = inherited.static_solution;
     read_case_scene(place, c, inherited);
     read_figures(r, c, inherited);
     r.finish();

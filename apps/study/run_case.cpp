@@ -27,6 +27,7 @@ void take_figures(CaseRecord& record, const Scene& scene, const RunResult& resul
   record.seconds += figures.seconds;
   record.steps_timed += figures.steps_timed;
   record.steps = figures.steps;
+  record.iterations = figures.iterations;
   if (result.code != exit_done && result.code != exit_not_static) return;
   record.state = CaseRecord::State::finished;
   record.end_time = static_cast<double>(figures.steps) * scene.time.dt;
@@ -50,8 +51,11 @@ ExitCode make(const Scene& scene, const RunOptions& options, CaseRecord record, 
     } catch (const Diverged& error) {
       record.state = CaseRecord::State::failed;
       record.message = std::string("diverged ") + error.what();
+    } catch (const NotStatic& error) {
+      record.state = CaseRecord::State::failed;
+      record.message = error.what();
     }
-    write_case_record(options.directory, scene.resolved, record);
+    write_case_record(options.directory, record_subject(scene, options.static_solution), record);
     return code;
   } catch (const FileError& error) {
     fmt::print(stderr, "vsb: {}\n", error.what());
@@ -81,7 +85,8 @@ int wait_for(pid_t child) {
 
 CaseResult run_case(const Scene& scene, const RunOptions& options, const CaseRecord& before,
                     const SceneRunner& run) {
-  write_case_record(options.directory, scene.resolved, before);
+  const std::string subject = record_subject(scene, options.static_solution);
+  write_case_record(options.directory, subject, before);
   std::fflush(nullptr);
   const pid_t parent = getpid();
   const pid_t child = fork();
@@ -98,7 +103,7 @@ CaseResult run_case(const Scene& scene, const RunOptions& options, const CaseRec
   const int status = wait_for(child);
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   if (code == exit_done)
-    if (const auto record = read_case_record(options.directory, scene.resolved)) return {exit_done, *record};
+    if (const auto record = read_case_record(options.directory, subject)) return {exit_done, *record};
   if (code == exit_interrupted || code == exit_files) return {static_cast<ExitCode>(code), before};
   // A crash, or no memory. That may be another time's luck, so the record on the disk stays as it is.
   CaseRecord record = before;

@@ -81,7 +81,8 @@ class StudyRun {
       for (size_t i = 0; i < study.series[s].cases.size(); ++i) {
         Task task{s, i, particles_of(study.series[s].cases[i]), {}};
         const auto& c = case_of(task);
-        if (c.scene) task.record = read_case_record(directory_of(c), c.scene->resolved);
+        if (c.scene)
+          task.record = read_case_record(directory_of(c), record_subject(*c.scene, c.static_solution));
         tasks_.push_back(std::move(task));
       }
   }
@@ -153,6 +154,7 @@ class StudyRun {
     int ended = 0;
     for (const auto& task : tasks_) {
       if (!task.done() || task.record->state != CaseRecord::State::finished) continue;
+      if (case_of(task).static_solution) continue;  // next to nothing
       cost += task.record->total_seconds();
       work += task.record->particle_steps();
       if (!case_of(task).scene->time.until_static) continue;
@@ -163,7 +165,7 @@ class StudyRun {
     double left = 0;
     for (size_t t = first; t < tasks_.size(); ++t) {
       const auto& c = case_of(tasks_[t]);
-      if (tasks_[t].done() || !c.scene) continue;
+      if (tasks_[t].done() || !c.scene || c.static_solution) continue;
       const auto& time = c.scene->time;
       auto steps = static_cast<double>(time.steps);
       if (time.until_static) {
@@ -179,15 +181,17 @@ class StudyRun {
   ExitCode make(Task& task) {
     const auto& c = case_of(task);
     if (!c.scene) {
-      task.record = CaseRecord{CaseRecord::State::failed, c.reading_failure, 0, 0, 0, 0, 0, "", {}};
+      task.record = CaseRecord{CaseRecord::State::failed, c.reading_failure, 0, 0, 0, 0, 0, 0, "", {}};
       return exit_done;
     }
     RunOptions run;
     run.directory = directory_of(c);
     run.quiet = options_.quiet;
     run.progress_only = true;
-    run.resume = task.record.has_value();  // it was begun by this program, on this scene
-    CaseRecord record = task.record.value_or(CaseRecord{});
+    run.static_solution = c.static_solution;
+    run.resume =
+        !c.static_solution && task.record.has_value();  // it was begun by this program, on this scene
+    CaseRecord record = run.resume ? *task.record : CaseRecord{};
     record.particles = task.particles;
     const auto result = run_case(*c.scene, run, record, options_.run);
     task.record = result.record;

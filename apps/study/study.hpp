@@ -30,6 +30,7 @@ struct StudyCase {
   bool fine = false;
   std::string
       expected_failure;  ///< text of the message with which the scene must be refused; empty: it must run
+  bool static_solution = false;               ///< as vsb run --static
   bool expect_static = true;                  ///< whether a run until static that does not get there fails
   std::map<std::string, Expectation> expect;  ///< by figure
   std::map<std::string, double> published;    ///< by figure

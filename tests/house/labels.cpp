@@ -6,6 +6,8 @@
 #include <vsb/kernels/balance.hpp>
 #include <vsb/kernels/flag_boundary_particles.hpp>
 #include <vsb/kernels/health.hpp>
+#include <vsb/kernels/static_solution.hpp>
+#include <vsb/kernels/unsupported_load.hpp>
 
 #include "support.hpp"
 
@@ -98,11 +100,19 @@ void run_everything(Scatter strategy) {
   REQUIRE(step(Exec(), state, bodies, basis, original, options) == -1);
   balance(Exec(), state, bodies, basis, pressure, options);
   REQUIRE(find_invalid(Exec(), block.particles).particle == -1);
+  find_unsupported_load(Exec(), state.nodes, state.occupancy.bins, basis, 1e-10);
+  Stiffness<LinearBasis<Dim, double>, Dim, double, Device> stiffness(block.particles, bodies, basis,
+                                                                     state.occupancy.bins, strategy);
+  const auto u = state.nodes.velocity;
+  solve_displacement(Exec(), stiffness, state.nodes, u, StaticOptions{1e-10, 2},
+                     [](int, double) { return true; });
+  strain_particles(Exec(), block.particles, bodies, basis, u);
   edit(block, [](const auto& particles) { particles.volume(0) = -1; });
   REQUIRE(find_invalid(Exec(), block.particles).particle == 0);
   const Kokkos::View<unsigned char*, Device> flag("vsb::flag", 64);
   void_filter_effect(Exec(), block.particles, state.occupancy.cells, grid, state.occupancy.tractions, 0);
   flag_boundary_particles(Exec(), block.particles, state.occupancy.boundary, basis, flag);
+  displace_particles(Exec(), block.particles, basis, u);
 }
 
 }  // namespace
@@ -141,6 +151,9 @@ TEST_CASE("every label starts with vsb::") {
                              "for: vsb::move_surface_points",
                              "for: vsb::subtract_cell_virtual_stress",
                              "for: vsb::node_balance",
+                             "region: vsb::solve_displacement",
+                             "for: vsb::stiffness_force",
+                             "reduce: vsb::strain_particles",
                              "allocation: vsb::particles",
                              "allocation: vsb::bin_sums"}) {
     CAPTURE(report);

@@ -162,7 +162,7 @@ class BadScenes(ProgramTest):
                 ("density =", "densty =", "boundary, density, jitter, lattice, material, name, particles_per_cell, seed, shape, stress, velocity"),
                 ("kappa =", "kapa =", "dt, kappa, steps, until_static"),
                 ("dimension =", "dimensoin =", "body, compare, dimension, faces, gravity, grid, method, name, output, precision, "
-                 "published, time, title, traction"),
+                 "published, static, time, title, traction"),
                 ("upper = [3.0, 3.0]", "uper = [3.0, 3.0]", "lower, upper"),
                 ("pressure =", "presure =", "exact_ellipse, imposition, layer, name, points_per_cell, pressure, stress, surface, time")):
             self.refuse(self.changed(old, new), f"(allowed here: {allowed})", "did you mean")

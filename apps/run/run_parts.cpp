@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/run_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "run/recovered_stress.hpp"
+#include "run/scene_advice.hpp"
+
+namespace vsb::app {
+
+namespace {
+
+/// A snapshot with the recovered stress where a field or a norm needs it.
+Snapshot take_snapshot(const Scene& scene, Simulation& simulation) {
+  const auto& fields = scene.output.fields;
+  Snapshot snapshot = simulation.snapshot();
+  if (scene.more_norms.recovered || std::count(fields.begin(), fields.end(), "recovered_stress") > 0)
+    recover_stress(scene, snapshot);
+  return snapshot;
+}
+
+}  // namespace
+
+double loads_settled_at(const Scene& scene) {
+  double t = 0;
+  for (const auto& traction : scene.tractions) t = std::max(t, traction.time.settled_at());
+  return t;
+}
+
+void print_advice(const Scene& scene) {
+  for (const auto& advice : scene_advice(scene)) fmt::print(stderr, "vsb: warning: {}\n", advice);
+}
+
+void announce_discarded_checkpoint(const Results& results) {
+  if (const auto step = results.checkpoint_step())
+    fmt::print(
+        stderr,
+        "vsb: discarding the checkpoint of step {} in {} (with --resume the run would have gone on from "
+        "it)\n",
+        *step, results.directory());
+}
+
+void write_frames(Results& results, const Scene& scene, Simulation& simulation) {
+  simulation.check_health();
+  const Snapshot snapshot = take_snapshot(scene, simulation);
+  results.write_frame(snapshot, compare_with_exact(scene, snapshot).exact);
+  if (scene.output.grid) results.write_grid_frame(simulation.grid_snapshot(), snapshot.step, snapshot.time);
+}
+
+void take_state(RunFigures& figures, const Scene& scene, Simulation& simulation) {
+  figures.state_hash = state_hash(simulation.save());
+  figures.errors = compare_with_exact(scene, take_snapshot(scene, simulation)).errors;
+  figures.cut = simulation.cut_volume();
+  figures.particles = simulation.particle_count();
+  figures.boundary_nodes = simulation.boundary_nodes();
+  figures.void_filter = simulation.void_filter();
+  figures.state_bytes = simulation.state_bytes();
+}
+
+}  // namespace vsb::app

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// What explicit runs and static solutions have in common.
+#pragma once
+
+#include "files/results.hpp"
+#include "run/simulation.hpp"
+#include "run/summary.hpp"
+
+namespace vsb::app {
+
+/// The time from which on all loads are constant, s; infinite where one never is.
+double loads_settled_at(const Scene& scene);
+
+/// Prints the scene's advice as warnings on standard error.
+void print_advice(const Scene& scene);
+
+/// Says which checkpoint a run that does not resume will remove, where there is one.
+void announce_discarded_checkpoint(const Results& results);
+
+/// Writes the frames of the present state. Throws Diverged for one that is not healthy.
+void write_frames(Results& results, const Scene& scene, Simulation& simulation);
+
+/// Enters errors, counts, memory and hash of the present state into the figures of a run.
+void take_state(RunFigures& figures, const Scene& scene, Simulation& simulation);
+
+}  // namespace vsb::app

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/run_static.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "run/interrupt.hpp"
+#include "run/progress.hpp"
+#include "run/run_parts.hpp"
+
+namespace vsb::app {
+
+namespace {
+
+/// Small strains: beyond this one the error of linear theory shows in the third digit.
+constexpr double small_strain = 5e-3;
+
+/// Refuses what only an explicit run can do.
+void refuse_moving_scenes(const Scene& scene) {
+  const auto refuse = [](const std::string& why) { throw SetupError("--static: " + why); };
+  if (scene.single_precision) refuse("needs precision = \"double\"");
+  for (const auto& traction : scene.tractions)
+    if (!std::isfinite(traction.time.settled_at()))
+      refuse(fmt::format("traction '{}' is a sine, which never settles, so there is no static state",
+                         traction.name));
+  for (const auto& body : scene.bodies)
+    if (body.velocity.value != Point{} || body.velocity.gradient != std::array<Point, 3>{})
+      refuse(
+          fmt::format("body '{}' has an initial velocity, of which a static state knows nothing", body.name));
+}
+
+}  // namespace
+
+RunResult run_static(const Scene& scene, const RunOptions& options) {
+  using Clock = std::chrono::steady_clock;
+  refuse_moving_scenes(scene);
+  const auto simulation = make_simulation(scene);
+  Results results(options.directory, scene);
+  if (!options.progress_only) announce_discarded_checkpoint(results);
+  const InterruptGuard guard;
+  const bool reports = !options.quiet && !options.progress_only;
+  Scene without_steps = scene;
+  without_steps.time.until_static.reset();  // what the way there would need is of no concern here
+  if (!options.progress_only) print_advice(without_steps);
+  if (reports)
+    fmt::print(
+        "{}: {} particles, {} boundary nodes, static solution under the loads at {:.6g} s, results in {}\n",
+        scene.name, simulation->particle_count(), simulation->boundary_nodes(), loads_settled_at(scene),
+        options.directory);
+
+  Progress progress(options.quiet, simulation->particle_count());
+  RunFigures figures;
+  figures.static_solution = true;
+  const auto begin = Clock::now();
+  const auto solution =
+      simulation->solve_static(loads_settled_at(scene), [&](int iteration, double residual) {
+        if (progress.due()) progress.report_iteration(iteration, residual);
+        return !interrupt_requested();
+      });
+  figures.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+  figures.iterations = solution.iterations;
+  progress.report_iteration(solution.iterations, solution.residual);
+  progress.finish();
+  if (!solution.converged && interrupt_requested()) {
+    if (!options.progress_only)
+      fmt::print("interrupted at iteration {}; a static solution begins anew\n", solution.iterations);
+    return {exit_interrupted, figures};
+  }
+  if (!solution.converged)
+    throw NotStatic(fmt::format(
+        "not static after {} iterations of at most {} (relative residual {:.2e}, wanted {:.2e}): raise "
+        "static.max_iterations; or the particles are too few to hold their cells' shape (2 per cell and "
+        "direction at least)",
+        solution.iterations, scene.static_solution.max_iterations, solution.residual,
+        scene.static_solution.residual));
+  if (solution.largest_strain > small_strain && !options.progress_only)
+    fmt::print(
+        stderr,
+        "vsb: warning: strains up to {:.2g}: --static is for small strains, an explicit run follows large "
+        "ones\n",
+        solution.largest_strain);
+
+  results.begin(-1);
+  write_frames(results, scene, *simulation);
+  figures.found_static = true;
+  figures.balance = solution.balance;
+  take_state(figures, scene, *simulation);
+  results.write_summary(summary_json(scene, figures));
+  if (reports) print_report(scene, figures);
+  return {exit_done, figures};
+}
+
+}  // namespace vsb::app

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// The stiffness matrix of the particles at small strain, which is never stored: its product with nodal
+/// displacements u, and its blocks on the diagonal,
+///   (K u)_I = sum_p V_p (C : sym G_p) . grad N_Ip,   G_p = sum_J u_J (x) grad N_Jp,
+///   K_II . e_j = sum_p V_p (C : sym (e_j (x) grad N_Ip)) . grad N_Ip.
+///
+/// Reads positions and volumes of the particles and nodal displacements; writes nodal vectors or blocks.
+#pragma once
+
+#include <vector>
+#include <vsb/kernels/scatter.hpp>
+#include <vsb/kernels/update_stress.hpp>
+
+namespace vsb {
+
+namespace kernel {
+
+/// What the particles first, ..., last - 1 of one material add to K u.
+template <class Basis, class Material, int Dim, class Real, class Device>
+struct StiffnessForce {
+  static constexpr int columns = Dim;
+  Particles<Dim, Real, Device> particles;
+  Basis basis;
+  Material material;
+  int first, last;
+  typename Nodes<Dim, Real, Device>::Fields displacement;  ///< [node][Dim], m
+
+  template <class Sink>
+  KOKKOS_FUNCTION void operator()(int p, const Sink& sink) const {
+    if (p < first || p >= last) return;
+    const auto shape = basis.shape(particles.position_of(p));
+    const auto sigma =
+        material.strained(SymmetricTensor<Dim, Real>::zero(), shape.gradient(displacement), Real(1));
+    const Real V = particles.volume(p);
+    for (int a = 0; a < Basis::support; ++a) {
+      const auto f = V * (sigma * shape.dN[a]);
+      for (int i = 0; i < Dim; ++i) sink(a, shape.node[a], i) += f[i];
+    }
+  }
+};
+
+/// What the same particles add to the blocks K_II, entry (i, j) in column i Dim + j.
+template <class Basis, class Material, int Dim, class Real, class Device>
+struct StiffnessBlock {
+  static constexpr int columns = Dim * Dim;
+  Particles<Dim, Real, Device> particles;
+  Basis basis;
+  Material material;
+  int first, last;
+
+  template <class Sink>
+  KOKKOS_FUNCTION void operator()(int p, const Sink& sink) const {
+    if (p < first || p >= last) return;
+    const auto shape = basis.shape(particles.position_of(p));
+    const Real V = particles.volume(p);
+    for (int a = 0; a < Basis::support; ++a)
+      for (int j = 0; j < Dim; ++j) {
+        auto G = Matrix<Dim, Real>::zero();
+        for (int k = 0; k < Dim; ++k) G(j, k) = shape.dN[a][k];
+        const auto f = V * (material.strained(SymmetricTensor<Dim, Real>::zero(), G, Real(1)) * shape.dN[a]);
+        for (int i = 0; i < Dim; ++i) sink(a, shape.node[a], i * Dim + j) += f[i];
+      }
+  }
+};
+
+/// sum <- sum + term.
+template <class Fields>
+struct AddNodalSums {
+  Fields sum, term;
+  KOKKOS_FUNCTION void operator()(int I) const {
+    for (size_t c = 0; c < sum.extent(1); ++c) sum(I, c) += term(I, c);
+  }
+};
+
+}  // namespace kernel
+
+/// The matrix K of particles where they are; their bins must be up to date.
+template <class Basis, int Dim, class Real, class Device>
+class Stiffness {
+ public:
+  using Fields = typename Nodes<Dim, Real, Device>::Fields;
+
+  Stiffness(const Particles<Dim, Real, Device>& particles, const std::vector<Body<Real>>& bodies,
+            const Basis& basis, const ParticleBins<Device>& bins, Scatter strategy)
+      : particles_(particles), bodies_(bodies), basis_(basis), bins_(bins), strategy_(strategy) {}
+
+  /// force <- K u. Both are [node][Dim]; prescribed components are none of its business. For a basis with
+  /// ghost nodes this is the place to give them the displacements of the nodes they mirror, before the sum,
+  /// and to fold their sums onto those nodes, after it.
+  template <class Exec>
+  void apply(const Exec& exec, const Fields& u, const Fields& force) {
+    sum_over_bodies<kernel::StiffnessForce>(exec, "vsb::stiffness_force", force_workspace_, force, u);
+  }
+
+  /// block <- K_II, [node][Dim x Dim].
+  template <class Exec>
+  void diagonal_blocks(const Exec& exec, const Fields& block) {
+    ScatterWorkspace<Real, Device> workspace;
+    sum_over_bodies<kernel::StiffnessBlock>(exec, "vsb::stiffness_block", workspace, block);
+  }
+
+ private:
+  template <template <class, class, int, class, class> class Contribution, class Exec, class... Inputs>
+  void sum_over_bodies(const Exec& exec, const std::string& label, ScatterWorkspace<Real, Device>& workspace,
+                       const Fields& target, const Inputs&... inputs) {
+    Kokkos::deep_copy(exec, target, Real(0));
+    if (bodies_.size() > 1 && (term_.extent(0) != target.extent(0) || term_.extent(1) != target.extent(1)))
+      term_ = Fields("vsb::stiffness_of_body", target.extent(0), target.extent(1));
+    for (const auto& body : bodies_) {
+      const Fields& sums = bodies_.size() > 1 ? term_ : target;
+      std::visit(
+          [&](const auto& material) {
+            using Material = std::decay_t<decltype(material)>;
+            scatter(exec, label, strategy_, particles_.count(), basis_, bins_, workspace,
+                    Contribution<Basis, Material, Dim, Real, Device>{particles_, basis_, material, body.first,
+                                                                     body.last, inputs...},
+                    sums);
+          },
+          body.material);
+      if (bodies_.size() > 1)
+        Kokkos::parallel_for("vsb::add_stiffness_of_body",
+                             Kokkos::RangePolicy<Exec>(exec, 0, static_cast<int>(target.extent(0))),
+                             kernel::AddNodalSums<Fields>{target, term_});
+    }
+  }
+
+  Particles<Dim, Real, Device> particles_;
+  std::vector<Body<Real>> bodies_;
+  Basis basis_;
+  ParticleBins<Device> bins_;
+  Scatter strategy_;
+  ScatterWorkspace<Real, Device> force_workspace_;
+  Fields term_;  ///< sums of one body, where there are several
+};
+
+}  // namespace vsb
