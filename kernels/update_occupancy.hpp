@@ -54,11 +54,11 @@ int update_occupancy(const Exec& exec, const Particles<Dim, Real, Device>& parti
   const auto where = locate_particles(exec, particles, o.bins, basis);
   if (where.lost >= 0) return where.lost;
   if (where.changed) sort_by_bin(exec, o.bins);
-  const bool refilled = o.minimum_fill > 0 && mark_underfilled_cells(exec, particles, o.bins, basis.grid,
+  const bool refilled = o.minimum_fill > 0 && mark_underfilled_cells(exec, particles, o.bins, basis,
                                                                      o.minimum_fill, o.cells.underfilled);
   if (where.changed || refilled)
     o.boundary_node_count =
-        mark_boundary_nodes(exec, particles, o.cells, basis.grid, o.tractions, o.boundary);
+        mark_boundary_nodes(exec, particles, o.cells, basis, o.tractions, o.boundary);
   return -1;
 }
 

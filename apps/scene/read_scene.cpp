@@ -7,6 +7,7 @@
 
 #include <vsb/physics/explicit_dynamics.hpp>
 #include <vsb/physics/linear_elastic.hpp>
+#include "scene/read_basis.hpp"
 #include "scene/read_grid.hpp"
 #include "scene/read_lattice.hpp"
 #include "scene/read_region.hpp"
@@ -208,8 +209,9 @@ TractionSpec read_traction(TableReader r, int dimension, size_t number, TimeShap
   return traction;
 }
 
-MethodSpec read_method(TableReader r) {
-  MethodSpec m;
+void read_method(TableReader r, Scene& scene) {
+  MethodSpec& m = scene.method;
+  read_basis(r, scene);
   m.damping =
       r.number("damping", {0, 1, false, true}, 0.0, "Cundall's alpha; not for bodies that move as a whole");
   m.volume_update = r.choice("volume_update", {"determinant", "exponential"}, "determinant");
@@ -221,7 +223,6 @@ MethodSpec read_method(TableReader r) {
                "tau: cells filled by less than 1 - tau count as boundary cells; 0: no such cells");
   m.allow_particles_on_grid_lines = r.boolean("allow_particles_on_grid_lines", false);
   r.finish();
-  return m;
 }
 
 /// The shortest of the bodies' times for a compression wave to cross a cell: dt of Eq. (29) for kappa = 1.
@@ -389,7 +390,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
     if (scene.tractions.back().exact && exact_fields++ > 0)
       table.fail(*table.source().get("exact_ellipse"), "exact_ellipse", "at most one traction may have it");
   }
-  scene.method = read_method(r.table("method"));
+  read_method(r.table("method"), scene);
   if (!r.has("time")) r.missing("time", "a table with dt or kappa, and steps or until_static");
   scene.time = read_time(r.table("time"), scene);
   for (size_t k = 0; k < time_shapes.size(); ++k) {
