@@ -35,9 +35,9 @@ struct CellBits {
 template <int Dim>
 struct BitRows {
   int cells_x;
-  Vector<2, int> cell_rows;  ///< rows of cells in y and z
-  Vector<2, int> node_rows;  ///< rows of nodes in y and z
-  int words;                 ///< words per row, of cells and of nodes
+  Vector<2, int> cell_rows;    ///< rows of cells in y and z
+  Vector<2, int> node_rows;    ///< rows of nodes in y and z
+  int words;                   ///< words per row, of cells and of nodes
   Vector<3, int> first, last;  ///< the cells that exist, in each direction
 
   KOKKOS_FUNCTION explicit BitRows(const CellNumbering<Dim>& grid) : cells_x(grid.cells[0]) {
@@ -223,7 +223,8 @@ int mark_boundary_nodes(const Exec& exec, const Particles<Dim, Real, Device>& pa
                          kernel::AddUnderfilled<Dim, Device>{bits, tiling});
   int count = 0;
   Kokkos::parallel_reduce("vsb::mark_boundary_nodes", over_node_words,
-                          kernel::MarkNodes<Dim, Device>{bits, tiling, Basis::reach, tractions, boundary}, count);
+                          kernel::MarkNodes<Dim, Device>{bits, tiling, Basis::reach, tractions, boundary},
+                          count);
   mirror_masks(exec, basis, boundary);
   exec.fence();
   return count;

@@ -57,8 +57,7 @@ int update_occupancy(const Exec& exec, const Particles<Dim, Real, Device>& parti
   const bool refilled = o.minimum_fill > 0 && mark_underfilled_cells(exec, particles, o.bins, basis,
                                                                      o.minimum_fill, o.cells.underfilled);
   if (where.changed || refilled)
-    o.boundary_node_count =
-        mark_boundary_nodes(exec, particles, o.cells, basis, o.tractions, o.boundary);
+    o.boundary_node_count = mark_boundary_nodes(exec, particles, o.cells, basis, o.tractions, o.boundary);
   return -1;
 }
 

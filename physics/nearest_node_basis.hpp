@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// What bases whose support is the 3^Dim nodes around the nearest one have in common: bins, and the product
-/// of the functions of each direction. A bin is the dual cell of a node, the points nearest to it, and carries
-/// that node's number.
+/// of the functions of each direction. A bin is the dual cell of a node, the points nearest to it, and
+/// carries that node's number.
 ///
 /// Points lie at least one cell away from the faces of `grid`: its outermost layer of cells are ghost cells,
 /// which with_ghost_layer adds to the grid of a scene. At a wall the nodes of this layer are mirror images
@@ -46,7 +46,8 @@ struct NearestNodeBasis {
 
   KOKKOS_FUNCTION bool mirrored(int axis, int side) const { return walls.mirrored(axis, side); }
 
-  /// Whether x lies in the grid without its ghost layer; round-off at a face counts as inside, NaN as outside.
+  /// Whether x lies in the grid without its ghost layer; round-off at a face counts as inside, NaN as
+  /// outside.
   KOKKOS_FUNCTION bool contains(const Position& x) const {
     const auto q = grid.in_cells(x);
     for (int i = 0; i < Dim; ++i) {
@@ -59,9 +60,7 @@ struct NearestNodeBasis {
 
   KOKKOS_FUNCTION int node_count() const { return grid.node_count(); }
   KOKKOS_FUNCTION int bin_count() const { return grid.node_count(); }
-  KOKKOS_FUNCTION int bin(const Position& x) const {
-    return grid.node_index(nearest_node(grid.in_cells(x)));
-  }
+  KOKKOS_FUNCTION int bin(const Position& x) const { return grid.node_index(nearest_node(grid.in_cells(x))); }
   KOKKOS_FUNCTION int node_of_bin(int bin_index, int a) const { return bin_index + offset(a); }
   /// The bin whose support node a is `node`, or -1 where there is none.
   KOKKOS_FUNCTION int bin_of_node(int node, int a) const {
@@ -79,8 +78,8 @@ struct NearestNodeBasis {
     return ijk;
   }
 
-  /// The products of functions(i, xi), the NodeTriple of direction i at the distance xi, -1/2 <= xi <= 1/2, in
-  /// cells from the nearest node. Digit i of a, to the base 3, is the node's place in direction i.
+  /// The products of functions(i, xi), the NodeTriple of direction i at the distance xi, -1/2 <= xi <= 1/2,
+  /// in cells from the nearest node. Digit i of a, to the base 3, is the node's place in direction i.
   template <class Functions>
   KOKKOS_FORCEINLINE_FUNCTION Shape<Dim, support, Real> product_shape(const Position& x,
                                                                       const Functions& functions) const {

@@ -63,8 +63,9 @@ void read_basis(TableReader& r, Scene& scene) {
   }
   const auto preset = default_half_width(scene);
   if (!preset && !r.has("gimp_half_width"))
-    r.missing("gimp_half_width",
-              "a number > 0 and <= 0.5, half the size of a particle in cells: no lattice of cells to take it from");
+    r.missing(
+        "gimp_half_width",
+        "a number > 0 and <= 0.5, half the size of a particle in cells: no lattice of cells to take it from");
   const auto width =
       r.number_or_numbers("gimp_half_width", static_cast<size_t>(scene.dimension), {0, 0.5, true, false},
                           preset, "half the size of a particle, in cells");
