@@ -31,6 +31,16 @@ struct CellBits {
   Rows underfilled;  ///< [row][word]: cells of E2 for want of particles; no rows without a fill criterion
 };
 
+namespace kernel {
+
+/// The bits of word w that stand for one of `count` cells or nodes.
+KOKKOS_INLINE_FUNCTION std::uint64_t valid_bits(int w, int count) {
+  const int left = count - 64 * w;
+  return left >= 64 ? ~std::uint64_t(0) : left <= 0 ? 0 : (std::uint64_t(1) << left) - 1;
+}
+
+}  // namespace kernel
+
 /// How rows of bits along x tile a grid.
 template <int Dim>
 struct BitRows {
@@ -69,12 +79,7 @@ struct BitRows {
   KOKKOS_FUNCTION std::uint64_t existing(const Vector<2, int>& at, int w, int upper) const {
     for (int i = 0; i < 2; ++i)
       if (at[i] < first[i + 1] || at[i] > last[i + 1] + (i + 1 < Dim ? upper : 0)) return 0;
-    return bits_below(last[0] + upper + 1 - 64 * w) & ~bits_below(first[0] - 64 * w);
-  }
-
- private:
-  KOKKOS_FUNCTION static std::uint64_t bits_below(int n) {
-    return n >= 64 ? ~std::uint64_t(0) : n <= 0 ? 0 : (std::uint64_t(1) << n) - 1;
+    return kernel::valid_bits(w, last[0] + upper + 1) & ~kernel::valid_bits(w, first[0]);
   }
 };
 
