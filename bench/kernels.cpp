@@ -15,7 +15,7 @@ Scene<Dim, Real> make_started_scene(const Size& size, Load load = Load::off,
   auto& state = s.state;
   particles_to_grid(Exec(), state.particles, state.occupancy.bins, state.nodes, state.occupancy.boundary,
                     state.sums_workspace.particles, s.basis, NoVirtualStress{}, s.options.gravity, strategy);
-  update_nodes(Exec(), state.nodes, s.options.damping, s.options.dt);
+  update_nodes(Exec(), state.nodes, s.basis, s.options.damping, s.options.dt);
   remap_velocity(Exec(), state.particles, state.occupancy.bins, state.nodes, state.remap_workspace, s.basis,
                  strategy);
   return s;
@@ -56,7 +56,7 @@ void add_node_and_particle_updates(const Size& size) {
   const auto scene = scene_name<Dim, Real>(size);
   add("update_nodes" + scene, [=](benchmark::State& state) {
     auto s = make_started_scene<Dim, Real>(size);
-    const auto run = [&] { update_nodes(Exec(), s.state.nodes, s.options.damping, s.options.dt); };
+    const auto run = [&] { update_nodes(Exec(), s.state.nodes, s.basis, s.options.damping, s.options.dt); };
     time(state, check_update_nodes(s, run), s.state.particles.count(), Traffic<Dim, Real>(s).update_nodes(),
          run);
   });
@@ -97,7 +97,7 @@ void add_occupancy(const Size& size) {
     auto s = make_scene<Dim, Real>(size, Load::free_faces, Scatter::gathered);
     auto& o = s.state.occupancy;
     const auto run = [&] {
-      return mark_boundary_nodes(Exec(), s.state.particles, o.cells, s.basis.grid, o.tractions, o.boundary);
+      return mark_boundary_nodes(Exec(), s.state.particles, o.cells, s.basis, o.tractions, o.boundary);
     };
     time(state, check_boundary_nodes(s, run), s.state.particles.count(),
          Traffic<Dim, Real>(s).mark_boundary_nodes(), run);

@@ -141,7 +141,7 @@ void apply_load(Scene<Dim, Real>& scene, Load load) {
   fill_nodes(scene);
   auto& o = scene.state.occupancy;
   o.boundary_node_count =
-      mark_boundary_nodes(Exec(), scene.state.particles, o.cells, scene.basis.grid, o.tractions, o.boundary);
+      mark_boundary_nodes(Exec(), scene.state.particles, o.cells, scene.basis, o.tractions, o.boundary);
 }
 
 /// The column at rest but for noise, with its occupancy up to date.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// Mass, momentum and force of all nodes: particles, whole cells (the original virtual stress boundary
-/// method) and surface points.
+/// method) and surface points; what ghost nodes beyond walls get goes to their images.
 #pragma once
 
 #include <vsb/kernels/cell_virtual_stress.hpp>
@@ -29,7 +29,10 @@ int assemble_forces(const Exec& exec, const Particles<Dim, Real, Device>& partic
                     virtual_stress, gravity, strategy);
   if constexpr (Field::cell_quadrature)
     subtract_cell_virtual_stress(exec, nodes, occupancy.boundary, basis, virtual_stress);
-  return add_surface_tractions(exec, surface, nodes, workspace.surface, basis, virtual_stress, strategy);
+  const int lost =
+      add_surface_tractions(exec, surface, nodes, workspace.surface, basis, virtual_stress, strategy);
+  fold_ghost_nodes(exec, basis, nodes.sums, 1);
+  return lost;
 }
 
 }  // namespace vsb

@@ -86,6 +86,7 @@ Balance<Dim> balance(const Exec& exec, State<Dim, Real, Device>& s, const std::v
                                                         Nodes<Dim, Real, Device>::sum_columns);
   particles_to_grid(exec, s.particles, s.occupancy.bins, bare, s.occupancy.boundary,
                     s.sums_workspace.particles, basis, NoVirtualStress{}, options.gravity, options.scatter);
+  fold_ghost_nodes(exec, basis, bare.sums, 1);
   assemble_forces(exec, s.particles, s.occupancy, s.surface, s.nodes, s.sums_workspace, basis, virtual_stress,
                   options.gravity, options.scatter);
   using Functor = kernel::NodeBalance<decltype(basis.grid), Dim, Real, Device>;

@@ -34,9 +34,9 @@ struct FloodVoids {
     const int r = i / tiling.words, w = i % tiling.words;
     const int j = r % tiling.cell_rows[0], k = r / tiling.cell_rows[0];
     const Vector<2, int> row{{j, k}};
-    std::uint64_t reached = dilated_word(from, tiling, w, row, row, true);
+    std::uint64_t reached = dilated_word(from, tiling, w, row, row, 1, 1);
     reached |= word(j - 1, k, w) | word(j + 1, k, w) | word(j, k - 1, w) | word(j, k + 1, w);
-    to(r, w) = reached & ~occupied(r, w) & valid_bits(w, tiling.cells_x);
+    to(r, w) = reached & ~occupied(r, w) & tiling.existing(row, w, 0);
     if (to(r, w) != from(r, w)) ++changed;
   }
   /// Word w of a row of `from`; nothing beyond the faces of the grid.
@@ -63,11 +63,11 @@ struct CountDifference {
 
 /// Brings the outside, CellBits::outside, from the cells of the last call to those of the particles. Waits
 /// for the device. Overwrites the occupied and exterior cells, as mark_boundary_nodes does again.
-template <class Exec, class Grid, int Dim, class Real, class Device>
+template <class Exec, class Basis, int Dim, class Real, class Device>
 void update_outside(const Exec& exec, const Particles<Dim, Real, Device>& particles,
-                    const CellBits<Device>& bits, const Grid& grid) {
-  const BitRows<Dim> tiling(grid);
-  mark_occupied_cells(exec, particles, bits, grid);
+                    const CellBits<Device>& bits, const Basis& basis) {
+  const auto tiling = BitRows<Dim>::of(basis);
+  mark_occupied_cells(exec, particles, bits, basis.grid);
   const auto flood = [&](const auto& from, const auto& to) {
     int changed = 0;
     Kokkos::parallel_reduce("vsb::flood_voids",
@@ -88,17 +88,17 @@ struct VoidFilterEffect {
 
 /// The effect of the filter on a boundary of `boundary_node_count` nodes that is up to date. Waits for the
 /// device.
-template <class Exec, class Grid, int Dim, class Real, class Device>
+template <class Exec, class Basis, int Dim, class Real, class Device>
 VoidFilterEffect void_filter_effect(const Exec& exec, const Particles<Dim, Real, Device>& particles,
-                                    const CellBits<Device>& bits, const Grid& grid,
+                                    const CellBits<Device>& bits, const Basis& basis,
                                     const BoundaryNodes<Device>& tractions, int boundary_node_count) {
-  auto unfiltered = allocate_cell_bits<Device>(grid);
+  auto unfiltered = allocate_cell_bits<Device>(basis.grid);
   unfiltered.underfilled = bits.underfilled;
   const BoundaryNodes<Device> boundary("vsb::unfiltered_boundary_nodes", tractions.extent(0));
   VoidFilterEffect effect;
   effect.dropped_nodes =
-      mark_boundary_nodes(exec, particles, unfiltered, grid, tractions, boundary) - boundary_node_count;
-  const BitRows<Dim> tiling(grid);
+      mark_boundary_nodes(exec, particles, unfiltered, basis, tractions, boundary) - boundary_node_count;
+  const BitRows<Dim> tiling(basis.grid);
   Kokkos::parallel_reduce(
       "vsb::count_false_voids", Kokkos::RangePolicy<Exec>(exec, 0, tiling.cell_row_count() * tiling.words),
       kernel::CountDifference<Device>{unfiltered.exterior, bits.outside, tiling.words}, effect.false_voids);

@@ -3,17 +3,20 @@
 /// Algorithm 1: the nodes at which the virtual stress acts.
 ///   E1: void cells (no particle inside) that have an active node, that is, that touch a non-void cell;
 ///   E2: non-void cells that share a node with a cell of E1;
-///   N1: active nodes of cells of E1 or E2.
+///   N1: active nodes whose support overlaps a cell of E1 or E2. For linear functions these are the nodes of
+///   such cells, as in the paper; wider functions (Basis::reach rings more) need a ring of nodes more, or a
+///   patch under uniform stress is out of balance by some 1e-3.
 /// Underfilled cells (kernels/mark_underfilled_cells.hpp), where they are asked for, count as cells of E2;
 /// the void filter (kernels/filter_voids.hpp), where it is asked for, leaves void cells out of E1.
 ///
 /// Cells and nodes are rows of bits along x, 64 to a word, and every "touches" is a dilation of bit rows.
 /// There are no cells beyond a face of the grid, so a fixed or symmetry plane there makes no boundary; a free
-/// boundary needs a void cell beyond it.
+/// boundary needs a void cell beyond it. The ghost cells beyond a wall do not exist for this algorithm: they
+/// mirror the cells inside, and touch nothing that those do not; ghost nodes are marked as their images are.
 #pragma once
 
+#include <vsb/kernels/mirror_nodes.hpp>
 #include <vsb/physics/cell_numbering.hpp>
-#include <vsb/views/nodes.hpp>
 #include <vsb/views/particles.hpp>
 
 namespace vsb {
@@ -30,13 +33,24 @@ struct CellBits {
   Rows outside;      ///< [row][word]: void cells that may be of E1; no rows without a void filter
 };
 
+namespace kernel {
+
+/// The bits of word w that stand for one of `count` cells or nodes.
+KOKKOS_INLINE_FUNCTION std::uint64_t valid_bits(int w, int count) {
+  const int left = count - 64 * w;
+  return left >= 64 ? ~std::uint64_t(0) : left <= 0 ? 0 : (std::uint64_t(1) << left) - 1;
+}
+
+}  // namespace kernel
+
 /// How rows of bits along x tile a grid.
 template <int Dim>
 struct BitRows {
   int cells_x;
-  Vector<2, int> cell_rows;  ///< rows of cells in y and z
-  Vector<2, int> node_rows;  ///< rows of nodes in y and z
-  int words;                 ///< words per row, of cells and of nodes
+  Vector<2, int> cell_rows;    ///< rows of cells in y and z
+  Vector<2, int> node_rows;    ///< rows of nodes in y and z
+  int words;                   ///< words per row, of cells and of nodes
+  Vector<3, int> first, last;  ///< the cells that exist, in each direction
 
   KOKKOS_FUNCTION explicit BitRows(const CellNumbering<Dim>& grid) : cells_x(grid.cells[0]) {
     for (int i = 0; i < 2; ++i) {
@@ -44,9 +58,31 @@ struct BitRows {
       node_rows[i] = i + 1 < Dim ? grid.cells[i + 1] + 1 : 1;
     }
     words = (cells_x + 1 + 63) / 64;
+    for (int i = 0; i < 3; ++i) {
+      first[i] = 0;
+      last[i] = i < Dim ? grid.cells[i < Dim ? i : 0] - 1 : 0;
+    }
+  }
+  /// Without the ghost cells beyond walls.
+  template <class Basis>
+  KOKKOS_FUNCTION static BitRows of(const Basis& basis) {
+    BitRows rows(basis.grid);
+    for (int i = 0; i < Dim; ++i) {
+      if (basis.mirrored(i, 0)) ++rows.first[i];
+      if (basis.mirrored(i, 1)) --rows.last[i];
+    }
+    return rows;
   }
   KOKKOS_FUNCTION int cell_row_count() const { return cell_rows[0] * cell_rows[1]; }
   KOKKOS_FUNCTION int node_row_count() const { return node_rows[0] * node_rows[1]; }
+
+  /// The bits of word w that stand for cells (upper = 0) or nodes (upper = 1) first, ..., last + upper of the
+  /// row at (j, k).
+  KOKKOS_FUNCTION std::uint64_t existing(const Vector<2, int>& at, int w, int upper) const {
+    for (int i = 0; i < 2; ++i)
+      if (at[i] < first[i + 1] || at[i] > last[i + 1] + (i + 1 < Dim ? upper : 0)) return 0;
+    return kernel::valid_bits(w, last[0] + upper + 1) & ~kernel::valid_bits(w, first[0]);
+  }
 };
 
 /// Allocates bit sets for a grid.
@@ -77,39 +113,36 @@ struct MarkOccupied {
 };
 
 /// Word w of the union of cell rows (j, k), first[0] <= j <= last[0], first[1] <= k <= last[1], each dilated
-/// by one cell towards lower x (if `both`) and one towards higher x.
+/// by `down` cells towards lower x and by `up` towards higher x.
 template <int Dim, class Rows>
 KOKKOS_INLINE_FUNCTION std::uint64_t dilated_word(const Rows& bits, const BitRows<Dim>& tiling, int w,
                                                   const Vector<2, int>& first, const Vector<2, int>& last,
-                                                  bool both) {
+                                                  int down, int up) {
   std::uint64_t result = 0;
   for (int k = math::max(first[1], 0); k <= math::min(last[1], tiling.cell_rows[1] - 1); ++k)
     for (int j = math::max(first[0], 0); j <= math::min(last[0], tiling.cell_rows[0] - 1); ++j) {
       const int row = k * tiling.cell_rows[0] + j;
       const std::uint64_t x = bits(row, w);
-      result |= x | x << 1;
-      if (w > 0) result |= bits(row, w - 1) >> 63;
-      if (both) {
-        result |= x >> 1;
-        if (w + 1 < tiling.words) result |= bits(row, w + 1) << 63;
+      result |= x;
+      for (int n = 1; n <= up; ++n) {
+        result |= x << n;
+        if (w > 0) result |= bits(row, w - 1) >> (64 - n);
+      }
+      for (int n = 1; n <= down; ++n) {
+        result |= x >> n;
+        if (w + 1 < tiling.words) result |= bits(row, w + 1) << (64 - n);
       }
     }
   return result;
 }
 
-/// The bits of word w that stand for one of `count` cells or nodes.
-KOKKOS_INLINE_FUNCTION std::uint64_t valid_bits(int w, int count) {
-  const int left = count - 64 * w;
-  return left >= 64 ? ~std::uint64_t(0) : left <= 0 ? 0 : (std::uint64_t(1) << left) - 1;
-}
-
-/// Word w of row r: the cells that touch a cell of `source`, the cells of `source` included.
+/// Word w of row r: the existing cells that touch a cell of `source`, the cells of `source` included.
 template <int Dim, class Rows>
 KOKKOS_INLINE_FUNCTION std::uint64_t touching_cells(const Rows& source, const BitRows<Dim>& tiling, int r,
                                                     int w) {
   const Vector<2, int> at{{r % tiling.cell_rows[0], r / tiling.cell_rows[0]}};
-  return dilated_word(source, tiling, w, {{at[0] - 1, at[1] - 1}}, {{at[0] + 1, at[1] + 1}}, true) &
-         valid_bits(w, tiling.cells_x);
+  return dilated_word(source, tiling, w, {{at[0] - 1, at[1] - 1}}, {{at[0] + 1, at[1] + 1}}, 1, 1) &
+         tiling.existing(at, w, 0);
 }
 
 /// E1, word by word.
@@ -156,20 +189,22 @@ struct AddUnderfilled {
   }
 };
 
-/// N1: one word of nodes; counts those at which a traction acts.
+/// N1: one word of nodes; counts those at which a traction acts. Ghost nodes beyond walls are no part of it.
 template <int Dim, class Device>
 struct MarkNodes {
   CellBits<Device> bits;
   BitRows<Dim> tiling;
+  int reach;  ///< of the basis
   BoundaryNodes<Device> tractions;
   BoundaryNodes<Device> boundary;
 
   KOKKOS_FUNCTION void operator()(int i, int& count) const {
     const int r = i / tiling.words, w = i % tiling.words;
     const Vector<2, int> at{{r % tiling.node_rows[0], r / tiling.node_rows[0]}};
-    const Vector<2, int> before{{at[0] - 1, at[1] - 1}};
-    const std::uint64_t active = dilated_word(bits.occupied, tiling, w, before, at, false);
-    const std::uint64_t marked = active & dilated_word(bits.boundary, tiling, w, before, at, false);
+    const Vector<2, int> from{{at[0] - 1 - reach, at[1] - 1 - reach}}, to{{at[0] + reach, at[1] + reach}};
+    const std::uint64_t active = dilated_word(bits.occupied, tiling, w, from, to, reach, 1 + reach);
+    const std::uint64_t marked = active & tiling.existing(at, w, 1) &
+                                 dilated_word(bits.boundary, tiling, w, from, to, reach, 1 + reach);
     const int nodes = math::min(tiling.cells_x + 1 - 64 * w, 64);
     for (int b = 0; b < nodes; ++b) {
       const int node = r * (tiling.cells_x + 1) + 64 * w + b;
@@ -192,15 +227,15 @@ void mark_occupied_cells(const Exec& exec, const Particles<Dim, Real, Device>& p
 
 /// Overwrites boundary[node] with tractions[node] at the nodes of N1 and with 0 elsewhere. tractions[node]
 /// says which tractions are declared at the place of a node (bit k: traction k). All particles must lie in
-/// the grid. Returns the number of nodes at which a traction acts; waits for the device.
-template <class Exec, class Grid, int Dim, class Real, class Device>
+/// the grid. Returns the number of nodes, ghost nodes aside, at which a traction acts; waits for the device.
+template <class Exec, class Basis, int Dim, class Real, class Device>
 int mark_boundary_nodes(const Exec& exec, const Particles<Dim, Real, Device>& particles,
-                        const CellBits<Device>& bits, const Grid& grid,
+                        const CellBits<Device>& bits, const Basis& basis,
                         const BoundaryNodes<Device>& tractions, const BoundaryNodes<Device>& boundary) {
-  const BitRows<Dim> tiling(grid);
+  const auto tiling = BitRows<Dim>::of(basis);
   const Kokkos::RangePolicy<Exec> over_cell_words(exec, 0, tiling.cell_row_count() * tiling.words);
   const Kokkos::RangePolicy<Exec> over_node_words(exec, 0, tiling.node_row_count() * tiling.words);
-  mark_occupied_cells(exec, particles, bits, grid);
+  mark_occupied_cells(exec, particles, bits, basis.grid);
   Kokkos::parallel_for("vsb::find_exterior_cells", over_cell_words,
                        kernel::FindExterior<Dim, Device>{bits, tiling});
   if (bits.outside.size() > 0)
@@ -213,7 +248,9 @@ int mark_boundary_nodes(const Exec& exec, const Particles<Dim, Real, Device>& pa
                          kernel::AddUnderfilled<Device>{bits, tiling.words});
   int count = 0;
   Kokkos::parallel_reduce("vsb::mark_boundary_nodes", over_node_words,
-                          kernel::MarkNodes<Dim, Device>{bits, tiling, tractions, boundary}, count);
+                          kernel::MarkNodes<Dim, Device>{bits, tiling, Basis::reach, tractions, boundary},
+                          count);
+  mirror_masks(exec, basis, boundary);
   exec.fence();
   return count;
 }

@@ -17,12 +17,12 @@ namespace vsb {
 namespace kernel {
 
 /// One word of cells: those that are filled too little; counts the words that
-/// change. The bin of a cell is the number of its lowest node.
-template <class Grid, int Dim, class Real, class Device>
+/// change.
+template <class Basis, int Dim, class Real, class Device>
 struct MarkUnderfilled {
   Particles<Dim, Real, Device> particles;
   ParticleBins<Device> bins;
-  Grid grid;
+  Basis basis;
   BitRows<Dim> tiling;
   Real minimum_fill;  ///< of the cell's volume
   typename CellBits<Device>::Rows underfilled;
@@ -33,18 +33,30 @@ struct MarkUnderfilled {
     cell[0] = 64 * w;
     if constexpr (Dim > 1) cell[1] = r % tiling.cell_rows[0];
     if constexpr (Dim > 2) cell[2] = r / tiling.cell_rows[0];
-    const int first_bin = grid.node_index(cell), cells = math::min(tiling.cells_x - 64 * w, 64);
+    const int first_node = basis.grid.node_index(cell), cells = math::min(tiling.cells_x - 64 * w, 64);
     std::uint64_t word = 0;
     for (int b = 0; b < cells; ++b, ++cell[0])
-      if (is_underfilled(first_bin + b, cell)) word |= std::uint64_t(1) << b;
+      if (is_underfilled(first_node + b, cell)) word |= std::uint64_t(1) << b;
     if (word != underfilled(r, w)) ++changed;
     underfilled(r, w) = word;
   }
 
-  KOKKOS_FUNCTION bool is_underfilled(int bin, const Vector<Dim, int>& cell) const {
+  KOKKOS_FUNCTION bool is_underfilled(int lowest_node, const Vector<Dim, int>& cell) const {
     Real volume = 0;
-    for (int k = bins.offset(bin); k < bins.offset(bin + 1); ++k) volume += particles.volume(bins.order(k));
-    return volume < minimum_fill * grid.cell_volume(cell);
+    for (int a = 0; a < Basis::bins_of_cell; ++a) {
+      const int bin = lowest_node + basis.grid.corner_offset(a);
+      for (int k = bins.offset(bin); k < bins.offset(bin + 1); ++k) {
+        const int p = bins.order(k);
+        if (Basis::bins_of_cell == 1 || is_in(cell, p)) volume += particles.volume(p);
+      }
+    }
+    return volume < minimum_fill * basis.grid.cell_volume(cell);
+  }
+  KOKKOS_FUNCTION bool is_in(const Vector<Dim, int>& cell, int p) const {
+    const auto place = basis.grid.cell_containing(particles.position_of(p));
+    bool same = true;
+    for (int i = 0; i < Dim; ++i) same = same && place[i] == cell[i];
+    return same;
   }
 };
 
@@ -52,16 +64,16 @@ struct MarkUnderfilled {
 
 /// Overwrites `underfilled` with the cells of which the particles fill less than `minimum_fill`, void cells
 /// among them. Returns whether this changed any; waits for the device.
-template <class Exec, class Grid, int Dim, class Real, class Device>
+template <class Exec, class Basis, int Dim, class Real, class Device>
 bool mark_underfilled_cells(const Exec& exec, const Particles<Dim, Real, Device>& particles,
-                            const ParticleBins<Device>& bins, const Grid& grid, double minimum_fill,
+                            const ParticleBins<Device>& bins, const Basis& basis, double minimum_fill,
                             const typename CellBits<Device>::Rows& underfilled) {
-  const BitRows<Dim> tiling(grid);
+  const BitRows<Dim> tiling(basis.grid);
   int changed = 0;
   Kokkos::parallel_reduce("vsb::mark_underfilled_cells",
                           Kokkos::RangePolicy<Exec>(exec, 0, tiling.cell_row_count() * tiling.words),
-                          kernel::MarkUnderfilled<Grid, Dim, Real, Device>{
-                              particles, bins, grid, tiling, static_cast<Real>(minimum_fill), underfilled},
+                          kernel::MarkUnderfilled<Basis, Dim, Real, Device>{
+                              particles, bins, basis, tiling, static_cast<Real>(minimum_fill), underfilled},
                           changed);
   exec.fence();
   return changed > 0;

@@ -6,6 +6,7 @@
 /// Reads particles and nodal masses; writes the re-mapped velocity of all nodes.
 #pragma once
 
+#include <vsb/kernels/mirror_nodes.hpp>
 #include <vsb/kernels/scatter.hpp>
 #include <vsb/views/nodes.hpp>
 #include <vsb/views/particles.hpp>
@@ -56,8 +57,10 @@ void remap_velocity(const Exec& exec, const Particles<Dim, Real, Device>& partic
                     ScatterWorkspace<Real, Device>& workspace, const Basis& basis, Scatter strategy) {
   scatter(exec, "vsb::remap_momentum", strategy, particles.count(), basis, bins, workspace,
           kernel::RemapMomentum<Basis, Dim, Real, Device>{particles, basis}, nodes.remapped_velocity);
+  fold_ghost_nodes(exec, basis, nodes.remapped_velocity, 0);
   Kokkos::parallel_for("vsb::remap_velocity", Kokkos::RangePolicy<Exec>(exec, 0, nodes.count()),
                        kernel::RemapNode<Dim, Real, Device>{nodes});
+  mirror_vectors(exec, basis, nodes.remapped_velocity);
 }
 
 }  // namespace vsb

@@ -57,7 +57,7 @@ int step(const Exec& exec, State<Dim, Real, Device>& s, const std::vector<Body<R
   const int lost_point = assemble_forces(exec, s.particles, s.occupancy, s.surface, s.nodes, s.sums_workspace,
                                          basis, virtual_stress, options.gravity, options.scatter);
   if (lost_point >= 0) return s.particles.count() + lost_point;
-  update_nodes(exec, s.nodes, options.damping, options.dt);
+  update_nodes(exec, s.nodes, basis, options.damping, options.dt);
   grid_to_particles(exec, s.particles, s.nodes, basis, options.dt);
   remap_velocity(exec, s.particles, s.occupancy.bins, s.nodes, s.remap_workspace, basis, options.scatter);
   update_stress(exec, s.particles, s.nodes, bodies, basis, options.volume_update, options.dt);

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <vector>
+#include <vsb/kernels/mirror_nodes.hpp>
 #include <vsb/kernels/scatter.hpp>
 #include <vsb/kernels/update_stress.hpp>
 
@@ -85,19 +86,21 @@ class Stiffness {
             const Basis& basis, const ParticleBins<Device>& bins, Scatter strategy)
       : particles_(particles), bodies_(bodies), basis_(basis), bins_(bins), strategy_(strategy) {}
 
-  /// force <- K u. Both are [node][Dim]; prescribed components are none of its business. For a basis with
-  /// ghost nodes this is the place to give them the displacements of the nodes they mirror, before the sum,
-  /// and to fold their sums onto those nodes, after it.
+  /// force <- K u. Both are [node][Dim]; prescribed components are none of its business. Ghost nodes get the
+  /// displacements of their images before the sum, and give them their forces after it.
   template <class Exec>
   void apply(const Exec& exec, const Fields& u, const Fields& force) {
+    mirror_vectors(exec, basis_, u);
     sum_over_bodies<kernel::StiffnessForce>(exec, "vsb::stiffness_force", force_workspace_, force, u);
+    fold_ghost_nodes(exec, basis_, force, 0);
   }
 
-  /// block <- K_II, [node][Dim x Dim].
+  /// block <- K_II, [node][Dim x Dim]; at images of ghost nodes that of both, without what couples them.
   template <class Exec>
   void diagonal_blocks(const Exec& exec, const Fields& block) {
     ScatterWorkspace<Real, Device> workspace;
     sum_over_bodies<kernel::StiffnessBlock>(exec, "vsb::stiffness_block", workspace, block);
+    fold_ghost_nodes(exec, basis_, block, Dim * Dim);
   }
 
  private:

@@ -2,11 +2,12 @@
 /// \file
 /// The equation of motion at the nodes (Eq. 9), with Cundall damping and prescribed components:
 ///   v_I = p_I / m_I,   f_I <- f_I - alpha |f_I| sign(v_I),   a_I = f_I / m_I,   v_I <- v_I + dt a_I;
-/// a = v = 0 in a prescribed component.
+/// a = v = 0 in a prescribed component; ghost nodes beyond walls follow their images.
 ///
 /// Reads mass, momentum, force and fixed components; writes acceleration and velocity of all nodes.
 #pragma once
 
+#include <vsb/kernels/mirror_nodes.hpp>
 #include <vsb/physics/explicit_dynamics.hpp>
 #include <vsb/views/nodes.hpp>
 
@@ -39,10 +40,13 @@ struct UpdateNode {
 }  // namespace kernel
 
 /// One explicit step of all nodes. damping: alpha, dimensionless, 0 for none; dt in s.
-template <class Exec, int Dim, class Real, class Device>
-void update_nodes(const Exec& exec, const Nodes<Dim, Real, Device>& nodes, Real damping, Real dt) {
+template <class Exec, class Basis, int Dim, class Real, class Device>
+void update_nodes(const Exec& exec, const Nodes<Dim, Real, Device>& nodes, const Basis& basis, Real damping,
+                  Real dt) {
   Kokkos::parallel_for("vsb::update_nodes", Kokkos::RangePolicy<Exec>(exec, 0, nodes.count()),
                        kernel::UpdateNode<Dim, Real, Device>{nodes, damping, dt});
+  mirror_vectors(exec, basis, nodes.acceleration);
+  mirror_vectors(exec, basis, nodes.velocity);
 }
 
 }  // namespace vsb

@@ -62,9 +62,10 @@ void set_void_filter(Occupancy<Device>& o, const Basis& basis) {
   o.cells.outside = typename CellBits<Device>::Rows("vsb::cells_outside", o.cells.boundary.extent(0),
                                                     o.cells.boundary.extent(1));
   const auto host = Kokkos::create_mirror_view(o.cells.outside);
-  for (size_t r = 0; r < host.extent(0); ++r)
-    for (size_t w = 0; w < host.extent(1); ++w)
-      host(r, w) = kernel::valid_bits(static_cast<int>(w), basis.grid.cells[0]);
+  const auto tiling = BitRows<Basis::dimension>::of(basis);
+  for (int r = 0; r < tiling.cell_row_count(); ++r)
+    for (int w = 0; w < tiling.words; ++w)
+      host(r, w) = tiling.existing({{r % tiling.cell_rows[0], r / tiling.cell_rows[0]}}, w, 0);
   Kokkos::deep_copy(o.cells.outside, host);
   mark_anew(o);
 }
@@ -76,12 +77,11 @@ int update_occupancy(const Exec& exec, const Particles<Dim, Real, Device>& parti
   const auto where = locate_particles(exec, particles, o.bins, basis);
   if (where.lost >= 0) return where.lost;
   if (where.changed) sort_by_bin(exec, o.bins);
-  const bool refilled = o.minimum_fill > 0 && mark_underfilled_cells(exec, particles, o.bins, basis.grid,
+  const bool refilled = o.minimum_fill > 0 && mark_underfilled_cells(exec, particles, o.bins, basis,
                                                                      o.minimum_fill, o.cells.underfilled);
-  if (where.changed && o.cells.outside.size() > 0) update_outside(exec, particles, o.cells, basis.grid);
+  if (where.changed && o.cells.outside.size() > 0) update_outside(exec, particles, o.cells, basis);
   if (where.changed || refilled)
-    o.boundary_node_count =
-        mark_boundary_nodes(exec, particles, o.cells, basis.grid, o.tractions, o.boundary);
+    o.boundary_node_count = mark_boundary_nodes(exec, particles, o.cells, basis, o.tractions, o.boundary);
   return -1;
 }
 

@@ -13,10 +13,17 @@ template <class Grid>
 struct CellBasis {
   static constexpr int dimension = Grid::dimension;
   static constexpr int support = Grid::corners;
+  /// Rings of cells, beyond those around a node, that its support overlaps.
+  static constexpr int reach = 0;
+  /// The bins of a cell's first corners, as many as this, have all its particles.
+  static constexpr int bins_of_cell = 1;
   using real = typename Grid::real;
   using Position = Vector<dimension, real>;
 
   Grid grid;
+
+  /// Whether the nodes beyond a face are mirror images (see physics/walls.hpp); here there are none.
+  KOKKOS_FUNCTION bool mirrored(int, int) const { return false; }
 
   KOKKOS_FUNCTION bool contains(const Position& x) const { return grid.contains(x); }
 

@@ -3,8 +3,8 @@
 /// Multilinear basis functions on a uniform grid: N_I = prod_i (1 - |x_i - x_Ii| / h_i) within one cell of
 /// node I.
 ///
-/// What a kernel asks of any basis: `dimension`, `real`, `support`, shape(x), contains(x), and bins (see
-/// physics/cell_basis.hpp).
+/// What a kernel asks of any basis: `dimension`, `real`, `support`, `reach`, shape(x), contains(x),
+/// mirrored(axis, side), and bins (see physics/cell_basis.hpp).
 #pragma once
 
 #include <vsb/physics/cell_basis.hpp>

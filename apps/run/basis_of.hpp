@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The basis functions of a scene's grid, with the memory they need, on the backend of this build.
+/// The basis functions of a scene, with the memory they need, on the backend of this build. Bases with reach
+/// get a grid with a layer of ghost cells around that of the scene.
 #pragma once
 
 #include <vsb/kernels/make_mapped_mesh.hpp>
 #include <vsb/physics/linear_basis.hpp>
 #include <vsb/physics/mapped_basis.hpp>
-#include "scene/grid_spec.hpp"
+#include <vsb/physics/quadratic_bspline_basis.hpp>
+#include <vsb/physics/uniform_gimp_basis.hpp>
+#include "scene/scene.hpp"
 
 namespace vsb::app {
 
@@ -22,20 +25,56 @@ using ExecutionSpace = Kokkos::Serial;
 template <class Basis, class Device = ExecutionSpace::device_type>
 struct OwnedBasis;
 
+template <int Dim, class Real>
+UniformGrid<Dim, Real> uniform_grid(const GridSpec& spec) {
+  Vector<Dim, Real> lower, spacing;
+  Vector<Dim, int> cells;
+  for (int i = 0; i < Dim; ++i) {
+    const auto axis = static_cast<size_t>(i);
+    lower[i] = static_cast<Real>(spec.lower[axis]);
+    spacing[i] = static_cast<Real>(spec.spacing[axis]);
+    cells[i] = spec.cells[axis];
+  }
+  return {lower, spacing, cells};
+}
+
+template <int Dim>
+Walls<Dim> walls(const FaceSpec& faces) {
+  Walls<Dim> w;
+  for (int i = 0; i < Dim; ++i)
+    for (int side = 0; side < 2; ++side)
+      w.fixed[i][side] = faces.fixed[static_cast<size_t>(i)][static_cast<size_t>(side)];
+  return w;
+}
+
 template <int Dim, class Real, class Device>
 struct OwnedBasis<LinearBasis<Dim, Real>, Device> {
   LinearBasis<Dim, Real> basis;
 
-  explicit OwnedBasis(const GridSpec& spec) {
-    Vector<Dim, Real> lower, spacing;
-    Vector<Dim, int> cells;
-    for (int i = 0; i < Dim; ++i) {
-      const auto axis = static_cast<size_t>(i);
-      lower[i] = static_cast<Real>(spec.lower[axis]);
-      spacing[i] = static_cast<Real>(spec.spacing[axis]);
-      cells[i] = spec.cells[axis];
-    }
-    basis.grid = {lower, spacing, cells};
+  explicit OwnedBasis(const Scene& scene) : basis{uniform_grid<Dim, Real>(scene.grid)} {}
+  size_t bytes() const { return 0; }
+};
+
+template <int Dim, class Real, class Device>
+struct OwnedBasis<QuadraticBSplineBasis<Dim, Real>, Device> {
+  QuadraticBSplineBasis<Dim, Real> basis;
+
+  explicit OwnedBasis(const Scene& scene) {
+    basis.grid = with_ghost_layer(uniform_grid<Dim, Real>(scene.grid));
+    basis.walls = walls<Dim>(scene.faces);
+  }
+  size_t bytes() const { return 0; }
+};
+
+template <int Dim, class Real, class Device>
+struct OwnedBasis<UniformGimpBasis<Dim, Real>, Device> {
+  UniformGimpBasis<Dim, Real> basis;
+
+  explicit OwnedBasis(const Scene& scene) {
+    basis.grid = with_ghost_layer(uniform_grid<Dim, Real>(scene.grid));
+    basis.walls = walls<Dim>(scene.faces);
+    for (int i = 0; i < Dim; ++i)
+      basis.half_width[i] = static_cast<Real>(scene.method.gimp_half_width[static_cast<size_t>(i)]);
   }
   size_t bytes() const { return 0; }
 };
@@ -45,7 +84,7 @@ struct OwnedBasis<MappedLinearBasis<Dim, Real>, Device> {
   MappedMesh<Dim, Real, Device> mesh;
   MappedLinearBasis<Dim, Real> basis;
 
-  explicit OwnedBasis(const GridSpec& spec) : mesh(make_mesh(spec)), basis{mesh.grid} {}
+  explicit OwnedBasis(const Scene& scene) : mesh(make_mesh(scene.grid)), basis{mesh.grid} {}
   size_t bytes() const {
     return mesh.nodes.position.span() * sizeof(Real) + mesh.nodes.start_cell.span() * sizeof(int);
   }

@@ -15,9 +15,9 @@ void with_host_basis(const Scene& scene, const Work& work) {
   const auto in_dimension = [&](auto dimension) {
     constexpr int Dim = decltype(dimension)::value;
     if (scene.grid.mapped())
-      work(OwnedBasis<MappedLinearBasis<Dim, double>, Host>(scene.grid).basis);
+      work(OwnedBasis<MappedLinearBasis<Dim, double>, Host>(scene).basis);
     else
-      work(OwnedBasis<LinearBasis<Dim, double>, Host>(scene.grid).basis);
+      work(OwnedBasis<LinearBasis<Dim, double>, Host>(scene).basis);
   };
   switch (scene.dimension) {
     case 1:

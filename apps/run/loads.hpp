@@ -82,14 +82,14 @@ class Loads {
     }
   }
 
-  /// Calls work(field) with the kernels' field for these tractions.
-  template <class Grid, class Device, class Work>
+  /// Calls work(field) with the kernels' field for these tractions; WithOriginal: by the original method too.
+  template <bool WithOriginal, class Grid, class Device, class Work>
   auto with_field(const Grid& grid, const CellBits<Device>& cells, const Work& work) const {
     if constexpr (Dim == 2 && std::is_same<Real, double>::value) {
-      if (field_.is_exact) return by_method(field_, grid, cells, work);
+      if (field_.is_exact) return by_method<WithOriginal>(field_, grid, cells, work);
     }
     if (field_.uniform.count == 0) return work(NoVirtualStress{});
-    return by_method(field_.uniform, grid, cells, work);
+    return by_method<WithOriginal>(field_.uniform, grid, cells, work);
   }
 
  private:
@@ -101,12 +101,14 @@ class Loads {
   };
   using Exact = std::conditional_t<Dim == 2, ExactEllipse<Real>, NoExactField>;
 
-  template <class Field, class Grid, class Device, class Work>
+  template <bool WithOriginal, class Field, class Grid, class Device, class Work>
   auto by_method(const Field& field, const Grid& grid, const CellBits<Device>& cells,
                  const Work& work) const {
     if (on_nodes_ == 0) return work(OnSurfacePoints<Field>{field});
-    if (original_ != 0)
-      return work(OriginalVirtualStress<Field, Grid, Device>{field, grid, cells, original_, gauss_points_});
+    if constexpr (WithOriginal) {
+      if (original_ != 0)
+        return work(OriginalVirtualStress<Field, Grid, Device>{field, grid, cells, original_, gauss_points_});
+    }
     return work(field);
   }
 

@@ -27,10 +27,10 @@ class SimulationOf final : public Simulation {
   explicit SimulationOf(const Scene& scene)
       : scene_(scene),
         placed_(place_particles(scene)),
-        owned_basis_(scene.grid),
+        owned_basis_(scene),
         basis_(owned_basis_.basis),
         loads_(scene) {
-    if (!scene.grid.mapped()) refuse_on_grid_lines(scene, placed_);
+    if (!scene.grid.mapped() && Basis::reach == 0) refuse_on_grid_lines(scene, placed_);
     block_ = allocate_particles<Dim, Real, Device>(static_cast<int>(placed_.position.size()));
     fill_particles();
     state_ = make_state(block_.particles, basis_);
@@ -64,7 +64,7 @@ class SimulationOf final : public Simulation {
     const auto& o = state_.occupancy;
     if (!scene_.method.void_filter) return {};
     const auto effect =
-        void_filter_effect(exec_, state_.particles, o.cells, basis_.grid, o.tractions, o.boundary_node_count);
+        void_filter_effect(exec_, state_.particles, o.cells, basis_, o.tractions, o.boundary_node_count);
     return {effect.false_voids, effect.dropped_nodes};
   }
 
@@ -202,18 +202,20 @@ class SimulationOf final : public Simulation {
                                                               "vsb::velocity on host");
     const auto boundary = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.occupancy.boundary,
                                                               "vsb::boundary on host");
-    const auto n = sums.extent(0);
+    const auto nodes = scene_nodes();
+    const auto n = nodes.size();
     GridSnapshot g;
     g.mass.resize(n);
     g.boundary.resize(n);
     g.velocity.assign(3 * n, 0.0);
     g.force.assign(3 * n, 0.0);
     for (size_t i = 0; i < n; ++i) {
-      g.mass[i] = sums(i, 0);
-      g.boundary[i] = boundary(i) != 0;
+      const size_t I = nodes[i];
+      g.mass[i] = sums(I, 0);
+      g.boundary[i] = boundary(I) != 0;
       for (size_t d = 0; d < Dim; ++d) {
-        g.velocity[3 * i + d] = velocity(i, d);
-        g.force[3 * i + d] = sums(i, 1 + Dim + d);
+        g.velocity[3 * i + d] = velocity(I, d);
+        g.force[3 * i + d] = sums(I, 1 + Dim + d);
       }
     }
     return g;
@@ -293,11 +295,31 @@ class SimulationOf final : public Simulation {
   static_assert(max_tractions == UniformVirtualStress<Dim, Real>::capacity,
                 "a scene may declare as many tractions as the kernels can take");
 
+  /// A node's numbers along the axes in the scene's grid, which has no ghost layer.
+  std::array<int, 3> ijk_in_scene(int node) const {
+    const auto ijk = basis_.grid.node_ijk(node);
+    std::array<int, 3> in_scene{};
+    for (int i = 0; i < Dim; ++i) in_scene[static_cast<size_t>(i)] = ijk[i] - Basis::reach;
+    return in_scene;
+  }
+
+  /// The nodes of the scene's grid.
+  std::vector<size_t> scene_nodes() const {
+    std::vector<size_t> nodes;
+    for (int node = 0; node < basis_.node_count(); ++node) {
+      const auto ijk = ijk_in_scene(node);
+      bool ghost = false;
+      for (size_t i = 0; i < Dim; ++i) ghost = ghost || ijk[i] < 0 || ijk[i] > scene_.grid.cells[i];
+      if (!ghost) nodes.push_back(static_cast<size_t>(node));
+    }
+    return nodes;
+  }
+
   double time() const { return static_cast<double>(step_) * scene_.time.dt; }
 
   template <class Work>
   auto with_field(const Work& work) const {
-    return loads_.with_field(basis_.grid, state_.occupancy.cells, work);
+    return loads_.template with_field<Basis::reach == 0>(basis_.grid, state_.occupancy.cells, work);
   }
 
   void fill_particles() {
@@ -342,12 +364,12 @@ class SimulationOf final : public Simulation {
   void fix_faces() {
     const auto mask = Kokkos::create_mirror_view(state_.nodes.fixed_components);
     for (int node = 0; node < basis_.node_count(); ++node) {
-      const auto ijk = basis_.grid.node_ijk(node);
+      const auto ijk = ijk_in_scene(node);
       ComponentMask fixed = 0;
-      for (int i = 0; i < Dim; ++i) {
-        const auto& faces = scene_.faces.fixed[static_cast<size_t>(i)];
+      for (size_t i = 0; i < Dim; ++i) {
+        const auto& faces = scene_.faces.fixed[i];
         if (ijk[i] == 0) fixed = static_cast<ComponentMask>(fixed | faces[0]);
-        if (ijk[i] == basis_.grid.cells[i]) fixed = static_cast<ComponentMask>(fixed | faces[1]);
+        if (ijk[i] == scene_.grid.cells[i]) fixed = static_cast<ComponentMask>(fixed | faces[1]);
       }
       mask(node) = fixed;
     }
@@ -357,10 +379,8 @@ class SimulationOf final : public Simulation {
   void declare_tractions() {
     const auto mask = Kokkos::create_mirror_view(state_.occupancy.tractions);
     for (int node = 0; node < basis_.node_count(); ++node) {
-      const auto ijk = basis_.grid.node_ijk(node);
-      std::array<int, 3> logical{};
-      for (int i = 0; i < Dim; ++i) logical[static_cast<size_t>(i)] = ijk[i];
-      mask(node) = tractions_at(scene_, loads_.on_nodes(), node_position(scene_.grid, Dim, logical));
+      mask(node) =
+          tractions_at(scene_, loads_.on_nodes(), node_position(scene_.grid, Dim, ijk_in_scene(node)));
     }
     Kokkos::deep_copy(state_.occupancy.tractions, mask);
   }
@@ -499,19 +519,5 @@ class SimulationOf final : public Simulation {
   StepOptions<Dim, Real> options_{};
   long long step_ = 0;
 };
-
-/// Both precisions of one dimension, mapped grids in double only; each dimension is compiled on its own.
-std::unique_ptr<Simulation> make_simulation_1d(const Scene& scene);
-std::unique_ptr<Simulation> make_simulation_2d(const Scene& scene);
-std::unique_ptr<Simulation> make_simulation_3d(const Scene& scene);
-
-template <int Dim>
-std::unique_ptr<Simulation> make_simulation_of(const Scene& scene) {
-  if (scene.grid.mapped())
-    return std::make_unique<SimulationOf<Dim, double, MappedLinearBasis<Dim, double>>>(scene);
-  if (scene.single_precision)
-    return std::make_unique<SimulationOf<Dim, float, LinearBasis<Dim, float>>>(scene);
-  return std::make_unique<SimulationOf<Dim, double, LinearBasis<Dim, double>>>(scene);
-}
 
 }  // namespace vsb::app

@@ -8,6 +8,7 @@
 #include <vsb/physics/exact_column.hpp>
 #include <vsb/physics/explicit_dynamics.hpp>
 #include <vsb/physics/linear_elastic.hpp>
+#include "scene/read_basis.hpp"
 #include "scene/read_grid.hpp"
 #include "scene/read_lattice.hpp"
 #include "scene/read_region.hpp"
@@ -219,8 +220,9 @@ TractionSpec read_traction(TableReader r, int dimension, size_t number, TimeShap
   return traction;
 }
 
-MethodSpec read_method(TableReader r) {
-  MethodSpec m;
+void read_method(TableReader r, Scene& scene) {
+  MethodSpec& m = scene.method;
+  read_basis(r, scene);
   m.damping =
       r.number("damping", {0, 1, false, true}, 0.0, "Cundall's alpha; not for bodies that move as a whole");
   m.volume_update = r.choice("volume_update", {"determinant", "exponential"}, "determinant");
@@ -233,7 +235,6 @@ MethodSpec read_method(TableReader r) {
   m.void_filter = r.boolean("void_filter", false);
   m.allow_particles_on_grid_lines = r.boolean("allow_particles_on_grid_lines", false);
   r.finish();
-  return m;
 }
 
 /// The shortest of the bodies' times for a compression wave to cross a cell: dt of Eq. (29) for kappa = 1.
@@ -441,7 +442,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
     if (scene.tractions.back().exact && exact_fields++ > 0)
       table.fail(*table.source().get("exact_ellipse"), "exact_ellipse", "at most one traction may have it");
   }
-  scene.method = read_method(r.table("method"));
+  read_method(r.table("method"), scene);
   const auto keeps_gradient = [](const BodySpec& b) { return b.material.law == MaterialLaw::hencky; };
   if (scene.method.volume_update != "determinant" &&
       std::any_of(scene.bodies.begin(), scene.bodies.end(), keeps_gradient))

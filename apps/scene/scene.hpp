@@ -100,7 +100,12 @@ struct TimeSpec {
   std::optional<StaticCriterion> until_static;
 };
 
+/// The functions through which particles and nodes exchange data.
+enum class BasisKind { linear, ugimp, quadratic_bspline };
+
 struct MethodSpec {
+  BasisKind basis = BasisKind::linear;
+  std::array<double, 3> gimp_half_width{};  ///< of a particle, per direction, in cells; of uGIMP
   double damping = 0;
   std::string volume_update, scatter;
   int cell_gauss_points = 1;  ///< of the original virtual stress boundary method, per direction

@@ -110,7 +110,7 @@ void run_everything(Scatter strategy) {
   edit(block, [](const auto& particles) { particles.volume(0) = -1; });
   REQUIRE(find_invalid(Exec(), block.particles).particle == 0);
   const Kokkos::View<unsigned char*, Device> flag("vsb::flag", 64);
-  void_filter_effect(Exec(), block.particles, state.occupancy.cells, grid, state.occupancy.tractions, 0);
+  void_filter_effect(Exec(), block.particles, state.occupancy.cells, basis, state.occupancy.tractions, 0);
   flag_boundary_particles(Exec(), block.particles, state.occupancy.boundary, basis, flag);
   displace_particles(Exec(), block.particles, basis, u);
 }

@@ -108,7 +108,8 @@ int compare(const UniformGrid<Dim, Real>& grid, const std::vector<bool>& void_ce
   Kokkos::deep_copy(bits.occupied, ~std::uint64_t(0));  // what a call leaves must not matter to the next
   Kokkos::deep_copy(bits.exterior, ~std::uint64_t(0));
   Kokkos::deep_copy(bits.boundary, ~std::uint64_t(0));
-  const int count = mark_boundary_nodes(Exec(), block.particles, bits, grid, tractions, boundary);
+  const int count =
+      mark_boundary_nodes(Exec(), block.particles, bits, LinearBasis<Dim, Real>{grid}, tractions, boundary);
 
   const auto got = read(boundary);
   int loaded = 0, wrong = 0;
@@ -192,7 +193,8 @@ TEST_CASE("faces of the grid make no boundary") {
   const BoundaryNodes<Device> tractions("vsb::tractions", 6), boundary("vsb::boundary", 6);
   Kokkos::deep_copy(tractions, 1u);
   const auto bits = allocate_cell_bits<Device>(grid);
-  CHECK(mark_boundary_nodes(Exec(), block.particles, bits, grid, tractions, boundary) == 2);
+  CHECK(mark_boundary_nodes(Exec(), block.particles, bits, LinearBasis<1, double>{grid}, tractions,
+                            boundary) == 2);
   const auto host = read(boundary);
   const TractionMask expected[] = {0, 1, 1, 0, 0, 0};
   for (int node = 0; node < 6; ++node) CHECK(host(node) == expected[node]);
@@ -204,8 +206,8 @@ TEST_CASE("without particles no node is loaded") {
   const BoundaryNodes<Device> tractions("vsb::tractions", n), boundary("vsb::boundary", n);
   Kokkos::deep_copy(tractions, 1u);
   const auto block = allocate_particles<2, double, Device>(0);
-  CHECK(mark_boundary_nodes(Exec(), block.particles, allocate_cell_bits<Device>(grid), grid, tractions,
-                            boundary) == 0);
+  CHECK(mark_boundary_nodes(Exec(), block.particles, allocate_cell_bits<Device>(grid),
+                            LinearBasis<2, double>{grid}, tractions, boundary) == 0);
 }
 
 TEMPLATE_TEST_CASE_SIG("a particle is flagged if a corner of its cell is loaded", "", ((int Dim), Dim), 1, 2,

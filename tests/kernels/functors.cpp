@@ -276,7 +276,7 @@ TEST_CASE("bits of rows of cells and nodes") {
   const CellBits<Host>::Rows bits("vsb::bits", 1, 3);
   bits(0, 0) = top, bits(0, 1) = 4, bits(0, 2) = 1;
   const auto dilated = [&](int w, bool both) {
-    return kernel::dilated_word(bits, tiling, w, {{0, 0}}, {{0, 0}}, both);
+    return kernel::dilated_word(bits, tiling, w, {{0, 0}}, {{0, 0}}, both ? 1 : 0, 1);
   };
   CHECK(dilated(0, false) == top);
   CHECK(dilated(0, true) == (top | top >> 1));
@@ -303,7 +303,7 @@ TEST_CASE("MarkOccupied, FindExterior, FindBoundary and MarkNodes in a row of fi
   Kokkos::deep_copy(tractions, 5u);
   tractions(3) = 0;
   int count = 10;
-  kernel::MarkNodes<1, Host>{bits, tiling, tractions, boundary}(0, count);
+  kernel::MarkNodes<1, Host>{bits, tiling, 0, tractions, boundary}(0, count);
   CHECK(count == 12);
   const TractionMask expected[] = {0, 0, 5, 0, 5, 0};  // active nodes 2, 3, 4; none declared at 3
   for (int node = 0; node < 6; ++node) CHECK(boundary(node) == expected[node]);

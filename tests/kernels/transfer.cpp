@@ -104,7 +104,7 @@ TEMPLATE_TEST_CASE_SIG("mass, momentum and force pass between particles and node
 
   // FLIP: the momentum changes by dt times the total force; the re-map keeps it.
   const Real dt = Real(0.01);
-  update_nodes(Exec(), setup.state.nodes, Real(0), dt);
+  update_nodes(Exec(), setup.state.nodes, setup.basis, Real(0), dt);
   grid_to_particles(Exec(), setup.state.particles, setup.state.nodes, setup.basis, dt);
   setup.remap();
   for (int i = 0; i < Dim; ++i) {

@@ -42,7 +42,7 @@ class Cloud {
   void update() { REQUIRE(update_occupancy(Exec(), block.particles, occupancy, basis) == -1); }
 
   VoidFilterEffect effect() const {
-    return void_filter_effect(Exec(), block.particles, occupancy.cells, basis.grid, occupancy.tractions,
+    return void_filter_effect(Exec(), block.particles, occupancy.cells, basis, occupancy.tractions,
                               occupancy.boundary_node_count);
   }
   std::vector<int> loaded_nodes() const {

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""uGIMP and quadratic B-splines in scenes: patches, walls, what the grid's frames show, and refusals."""
+import tomllib
+import unittest
+
+import h5py
+import numpy as np
+from vsb_program import SCENES, ProgramTest, last_fields, vsb
+
+WIDE = ("ugimp", "quadratic_bspline")
+
+
+def basis(name):
+    return ("--set", f'method.basis="{name}"')
+
+
+class Patches(ProgramTest):
+    # A stiff column: uGIMP's particles keep their size, so its error grows with the strain, 2e-2 of it.
+    STIFF = ("--set", "body[0].material.youngs_modulus=1e7", "--set", "time.dt=1e-4", "--set", "method.damping=0.2",
+             "--set", "method.volume_update=exponential")
+
+    def test_uniaxial_stress_wherever_the_end_lies_in_its_cell(self):
+        for name in WIDE:
+            for end in (9.125, 9.375, 9.5, 9.625, 9.875):
+                errors = self.run_scene("column", *basis(name), *self.STIFF, "--set", f"body[0].shape.box.upper=[{end}]")["errors"]
+                self.assertLess(errors["e_sigma"], 1e-7, f"{name} {end}")
+
+    def test_rollers_on_a_grid_of_one_cell(self):
+        for name in WIDE:
+            errors = self.run_scene("column-2d", *basis(name), *self.STIFF)["errors"]
+            self.assertLess(errors["e_sigma"], 1e-7, name)
+            stress = last_fields(self.folder / "column-2d")["cauchy_stress"]
+            np.testing.assert_allclose(stress[:, 3:], 0, rtol=0, atol=1e-12, err_msg=name)
+
+    def test_surface_points_load_the_same_bar(self):
+        for name in WIDE:
+            for imposition in ("boundary_particles", "material_points"):
+                summary = self.run_scene("column", *basis(name), "--set", f'traction[0].imposition="{imposition}"')
+                stress = last_fields(self.folder / "column")["cauchy_stress"][:, 0]
+                # Far from the loaded end the bar carries the load.
+                np.testing.assert_allclose(stress[:48], -1, rtol=0, atol=5e-3, err_msg=f"{name} {imposition}")
+                self.assertAlmostEqual(summary["net_force"][0], -1, delta=1e-9)
+
+
+class Frames(ProgramTest):
+    def test_nodes_of_the_scene_carry_all_mass(self):
+        for name in WIDE:
+            out = self.folder / name
+            done = vsb("run", SCENES / "cylinder.toml", *basis(name), "--set", "output.grid=true", "--quiet",
+                       "--set", "time.until_static.max_steps=3", "--out", out)
+            self.assertEqual(done.returncode, 7, done.stderr)
+            last = sorted(out.glob("cylinder_grid_*.hdf"))[-1]
+            with h5py.File(last) as file:
+                mass = file["VTKHDF/PointData/mass"][()]
+                self.assertEqual(len(mass), 25 * 25)
+                self.assertEqual(len(file["VTKHDF/Points"]), 25 * 25)
+            self.assertAlmostEqual(mass.sum() / last_fields(out)["mass"].sum(), 1, delta=1e-12)
+
+    def test_threads_do_not_matter(self):
+        for name in WIDE:
+            hashes = {self.run_scene("cylinder", *basis(name), "--set", "time.until_static.max_steps=100", out=f"{name}{n}",
+                                     environment={"OMP_NUM_THREADS": str(n)})["state_hash"] for n in (1, 3)}
+            self.assertEqual(len(hashes), 1, name)
+
+
+class Keys(ProgramTest):
+    def check(self, *arguments, scene="cylinder"):
+        return vsb("check", SCENES / f"{scene}.toml", *arguments)
+
+    def test_half_width_of_the_particles(self):
+        done = self.check(*basis("ugimp"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("gimp_half_width = 0.125", done.stdout)
+        done = self.check(*basis("ugimp"), "--set", "method.gimp_half_width=0.25")
+        self.assertIn("gimp_half_width = 0.25", done.stdout)
+        done = self.check(*basis("ugimp"), scene="cylinder-concentric")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("method.gimp_half_width is missing", done.stderr)
+        for bad in ("0", "0.6", "-0.1", "[0.1]", '"wide"'):
+            done = self.check(*basis("ugimp"), "--set", f"method.gimp_half_width={bad}")
+            self.assertEqual(done.returncode, 2, bad)
+            self.assertIn("gimp_half_width", done.stderr)
+        done = self.check(*basis("linear"), "--set", "method.gimp_half_width=0.25")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn('is for basis = "ugimp"', done.stderr)
+
+    def test_what_only_the_linear_basis_can_do(self):
+        for name in WIDE:
+            for scene, arguments, word in (
+                    ("cylinder-polar", (), "uniform grids"),
+                    ("cylinder", ("--set", "precision=float"), "double"),
+                    ("cylinder", ("--set", 'traction[0].imposition="nodal"'), "nodes"),
+                    ("cylinder", ("--set", 'traction[0].imposition="virtual_stress_original"'), "whole cells")):
+                done = self.check(*basis(name), *arguments, scene=scene)
+                self.assertEqual(done.returncode, 2, f"{name} {scene} {arguments}")
+                self.assertIn("method.basis", done.stderr)
+                self.assertIn(word, done.stderr)
+        done = self.check(*basis("cubic"))
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("quadratic_bspline", done.stderr)
+
+    def test_particles_on_grid_lines_do_no_harm(self):
+        # Points at 0.125 m (k + 1), every eighth of them on a line between cells of 1 m.
+        text = (SCENES / "column.toml").read_text().replace(
+            "particles_per_cell = 8", "lattice = { uniform = { spacing = 0.125, origin = [0.0625] } }")
+        path = self.write(text)
+        self.assertEqual(vsb("check", path).returncode, 2)
+        for name in WIDE:
+            self.assertEqual(vsb("check", path, *basis(name)).returncode, 0)
+
+    def test_resolved_scene_is_read_as_itself(self):
+        for name in WIDE:
+            done = self.check(*basis(name))
+            text = done.stdout[done.stdout.index("name ="):]
+            self.assertIn(f"basis = '{name}'", text)
+            tomllib.loads(text)
+
+
+if __name__ == "__main__":
+    unittest.main()
