@@ -150,6 +150,7 @@ struct MarkNodes {
   BitRows<Dim> tiling;
   BoundaryNodes<Device> tractions;
   BoundaryNodes<Device> boundary;
+  TractionMask conservative;
 
   KOKKOS_FUNCTION void operator()(int i, int& count) const {
     const int r = i / tiling.words, w = i % tiling.words;
@@ -160,7 +161,9 @@ struct MarkNodes {
     const int nodes = math::min(tiling.cells_x + 1 - 64 * w, 64);
     for (int b = 0; b < nodes; ++b) {
       const int node = r * (tiling.cells_x + 1) + 64 * w + b;
-      boundary(node) = marked >> b & 1 ? tractions(node) : 0;
+      boundary(node) = marked >> b & 1   ? tractions(node)
+                       : active >> b & 1 ? tractions(node) & conservative
+                                         : 0;
       if (boundary(node) != 0) ++count;
     }
   }
@@ -169,12 +172,14 @@ struct MarkNodes {
 }  // namespace kernel
 
 /// Overwrites boundary[node] with tractions[node] at the nodes of N1 and with 0 elsewhere. tractions[node]
-/// says which tractions are declared at the place of a node (bit k: traction k). All particles must lie in
-/// the grid. Returns the number of nodes at which a traction acts; waits for the device.
+/// says which tractions are declared at the place of a node (bit k: traction k); those of `conservative` act
+/// at all active nodes, of N1 or not. All particles must lie in the grid. Returns the number of nodes at
+/// which a traction acts; waits for the device.
 template <class Exec, class Grid, int Dim, class Real, class Device>
 int mark_boundary_nodes(const Exec& exec, const Particles<Dim, Real, Device>& particles,
                         const CellBits<Device>& bits, const Grid& grid,
-                        const BoundaryNodes<Device>& tractions, const BoundaryNodes<Device>& boundary) {
+                        const BoundaryNodes<Device>& tractions, const BoundaryNodes<Device>& boundary,
+                        TractionMask conservative = 0) {
   const BitRows<Dim> tiling(grid);
   const Kokkos::RangePolicy<Exec> over_cell_words(exec, 0, tiling.cell_row_count() * tiling.words);
   const Kokkos::RangePolicy<Exec> over_node_words(exec, 0, tiling.node_row_count() * tiling.words);
@@ -190,7 +195,8 @@ int mark_boundary_nodes(const Exec& exec, const Particles<Dim, Real, Device>& pa
                          kernel::AddUnderfilled<Device>{bits, tiling.words});
   int count = 0;
   Kokkos::parallel_reduce("vsb::mark_boundary_nodes", over_node_words,
-                          kernel::MarkNodes<Dim, Device>{bits, tiling, tractions, boundary}, count);
+                          kernel::MarkNodes<Dim, Device>{bits, tiling, tractions, boundary, conservative},
+                          count);
   exec.fence();
   return count;
 }

@@ -81,8 +81,9 @@ void write_frames(Results& results, const Scene& scene, Simulation& simulation) 
   if (scene.output.grid) results.write_grid_frame(simulation.grid_snapshot(), snapshot.step, snapshot.time);
 }
 
-void print_advice(const Scene& scene) {
+void print_advice(const Scene& scene, const Simulation& simulation) {
   for (const auto& advice : scene_advice(scene)) fmt::print(stderr, "vsb: warning: {}\n", advice);
+  for (const auto& advice : simulation.advice()) fmt::print(stderr, "vsb: warning: {}\n", advice);
 }
 
 RunResult run(const Scene& scene, const RunOptions& options) {
@@ -106,7 +107,7 @@ RunResult run(const Scene& scene, const RunOptions& options) {
   const InterruptGuard guard;  // from the first file on
   results.begin(resumed_step);
   const bool reports = !options.quiet && !options.progress_only;
-  if (!options.progress_only) print_advice(scene);
+  if (!options.progress_only) print_advice(scene, *simulation);
   if (reports) {
     fmt::print("{}: {} particles, {} boundary nodes, dt {:.6g} s, {} {} steps, results in {}\n", scene.name,
                simulation->particle_count(), simulation->boundary_nodes(), scene.time.dt,
@@ -201,7 +202,7 @@ RunResult run_scene(const Scene& scene, const RunOptions& options) {
 
 void check_scene(const Scene& scene) {
   const auto simulation = make_simulation(scene);
-  print_advice(scene);
+  print_advice(scene, *simulation);
   fmt::print("# {} particles, {} boundary nodes, {:.3g} MB of state\n", simulation->particle_count(),
              simulation->boundary_nodes(), static_cast<double>(simulation->state_bytes()) / 1e6);
   const double settled = loads_settled_at(scene);

@@ -65,6 +65,8 @@ class Simulation {
   virtual int particle_count() const = 0;
   virtual long long step() const = 0;
   virtual int boundary_nodes() const = 0;
+  /// What looks wrong about the virtual stress fields, a sentence each; see run/field_advice.hpp.
+  virtual std::vector<std::string> advice() const = 0;
   /// Memory of particles, nodes and occupancy.
   virtual size_t state_bytes() const = 0;
 

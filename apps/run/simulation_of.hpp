@@ -11,6 +11,7 @@
 #include <vsb/kernels/flag_boundary_particles.hpp>
 #include <vsb/kernels/health.hpp>
 #include "run/basis_of.hpp"
+#include "run/field_advice.hpp"
 #include "run/grid_lines.hpp"
 #include "run/loads.hpp"
 #include "run/simulation.hpp"
@@ -51,6 +52,8 @@ class SimulationOf final : public Simulation {
   long long step() const override { return step_; }
   int boundary_nodes() const override { return state_.occupancy.boundary_node_count; }
 
+  std::vector<std::string> advice() const override { return field_advice(scene_, placed_, occupied_cells()); }
+
   size_t state_bytes() const override {
     const auto& o = state_.occupancy;
     const auto& n = state_.nodes;
@@ -64,7 +67,7 @@ class SimulationOf final : public Simulation {
 
   void advance(long long steps) override {
     for (long long n = 0; n < steps; ++n) {
-      loads_.set_time(scene_, static_cast<double>(step_ + 1) * scene_.time.dt);
+      set_loads(static_cast<double>(step_ + 1) * scene_.time.dt);
       const int lost = with_field(
           [&](const auto& field) { return vsb::step(exec_, state_, bodies_, basis_, field, options_); });
       if (lost >= 0) throw_lost(lost);
@@ -86,7 +89,7 @@ class SimulationOf final : public Simulation {
 
   BalanceReport balance() override { return balance_under_loads_at(time()); }
   BalanceReport balance_under_loads_at(double t) override {
-    loads_.set_time(scene_, t);
+    set_loads(t);
     locate();
     const auto b = with_field(
         [&](const auto& field) { return vsb::balance(exec_, state_, bodies_, basis_, field, options_); });
@@ -214,6 +217,11 @@ class SimulationOf final : public Simulation {
 
   double time() const { return static_cast<double>(step_) * scene_.time.dt; }
 
+  void set_loads(double t) {
+    loads_.set_time(scene_, t);
+    loads_.balance(exec_, state_.particles, to_vector(placed_.position.front()));
+  }
+
   template <class Work>
   auto with_field(const Work& work) const {
     return loads_.with_field(basis_.grid, state_.occupancy.cells, work);
@@ -270,16 +278,23 @@ class SimulationOf final : public Simulation {
       mask(node) = tractions_at(scene_, loads_.on_nodes(), node_position(scene_.grid, Dim, logical));
     }
     Kokkos::deep_copy(state_.occupancy.tractions, mask);
+    state_.occupancy.conservative = loads_.conservative();
+  }
+
+  OccupiedCells occupied_cells() const {
+    OccupiedCells cells;
+    for (int i = 0; i < Dim; ++i) cells.cells[static_cast<size_t>(i)] = basis_.grid.cells[i];
+    cells.occupied.resize(static_cast<size_t>(basis_.grid.cell_count()));
+    for (const Point& x : placed_.position)
+      cells.occupied[static_cast<size_t>(basis_.grid.cell_index(basis_.grid.cell_containing(to_vector(x))))] =
+          true;
+    return cells;
   }
 
   /// The points of the tractions that are not imposed through boundary nodes.
   void place_surface_points() {
     auto points = loaded_points(scene_, placed_);
-    std::vector<bool> occupied(static_cast<size_t>(basis_.grid.cell_count()));
-    for (const Point& x : placed_.position) {
-      occupied[static_cast<size_t>(basis_.grid.cell_index(basis_.grid.cell_containing(to_vector(x))))] = true;
-    }
-    const auto conforming = conforming_points<Dim>(scene_, basis_.grid, occupied);
+    const auto conforming = conforming_points<Dim>(scene_, basis_.grid, occupied_cells().occupied);
     points.insert(points.end(), conforming.begin(), conforming.end());
     if (points.empty()) return;
     auto& s = state_.surface;
@@ -340,7 +355,7 @@ class SimulationOf final : public Simulation {
       const auto shape = basis_.shape(to_vector(placed_.position[p]));
       for (int a = 0; a < Basis::support; ++a) {
         const auto ijk = basis_.grid.node_ijk(shape.node[a]);
-        if (declared(static_cast<size_t>(shape.node[a])) == 0) continue;
+        if ((declared(static_cast<size_t>(shape.node[a])) & ~loads_.conservative()) == 0) continue;
         for (int i = 0; i < Dim; ++i) {
           const auto& faces = scene_.faces.fixed[static_cast<size_t>(i)];
           const bool lower = ijk[i] == 0 && faces[0] == 0,
