@@ -69,6 +69,7 @@ ComparisonResult compare(const CylinderComparison& c, const Scene& scene, const 
   const ExactCylinder<double> solution{c.inner_radius, c.outer_radius, c.pressure, m.youngs_modulus,
                                        m.poisson_ratio};
   Norm rr, tt, u;
+  double hoop = 0, exact_hoop = 0;
   ComparisonResult result;
   result.exact.displacement.assign(3 * s.count(), 0.0);
   result.exact.cauchy_stress.assign(6 * s.count(), 0.0);
@@ -79,6 +80,8 @@ ComparisonResult compare(const CylinderComparison& c, const Scene& scene, const 
     const auto ours = to_polar(in_plane_stress(s, p), x[0], x[1]);
     rr.add((exact.rr - ours.rr) / c.pressure, V);
     tt.add((exact.tt - ours.tt) / c.pressure, V);
+    hoop += V * ours.tt;
+    exact_hoop += V * exact.tt;
     u.add((solution.radial_displacement(r) - dot(x - x0, x) / r) / c.inner_radius, V);
     for (size_t i = 0; i < 2; ++i)
       result.exact.displacement[3 * p + i] = solution.radial_displacement(r) * x[static_cast<int>(i)] / r;
@@ -87,6 +90,7 @@ ComparisonResult compare(const CylinderComparison& c, const Scene& scene, const 
     store(cartesian, result.exact.cauchy_stress, p);
   }
   result.errors = {{"e_rr", rr.value()}, {"e_tt", tt.value()}, {"e_u", u.value()}};
+  result.figures = {{"hoop_ratio", hoop / exact_hoop}};  // of the mean hoop stresses
   return result;
 }
 
@@ -116,6 +120,11 @@ ComparisonResult compare(const std::monostate&, const Scene&, const Snapshot&) {
 }
 
 }  // namespace
+
+std::vector<std::string> comparison_figure_names(const Comparison& comparison) {
+  if (std::holds_alternative<CylinderComparison>(comparison)) return {"hoop_ratio"};
+  return {};
+}
 
 ComparisonResult compare_with_exact(const Scene& scene, const Snapshot& snapshot) {
   return std::visit([&](const auto& c) { return compare(c, scene, snapshot); }, scene.compare);

@@ -174,7 +174,9 @@ RunResult run(const Scene& scene, const RunOptions& options) {
   figures.found_static = found_static;
   figures.balance = balance;
   figures.state_hash = state_hash(simulation->save());
-  figures.errors = compare_with_exact(scene, simulation->snapshot()).errors;
+  const auto comparison = compare_with_exact(scene, simulation->snapshot());
+  figures.errors = comparison.errors;
+  figures.compared = comparison.figures;
   figures.particles = simulation->particle_count();
   figures.boundary_nodes = simulation->boundary_nodes();
   figures.state_bytes = simulation->state_bytes();

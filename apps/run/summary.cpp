@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "files/build_info.hpp"
+#include "run/comparison.hpp"
 #include "scene/toml_reader.hpp"
 
 namespace vsb::app {
@@ -38,6 +39,7 @@ double RunFigures::ns_per_particle_step() const {
 
 std::vector<std::pair<std::string, double>> named_figures(const Scene& scene, const RunFigures& f) {
   auto named = f.errors;
+  named.insert(named.end(), f.compared.begin(), f.compared.end());
   named.insert(named.end(), {{"particles", f.particles},
                              {"boundary_nodes", f.boundary_nodes},
                              {"steps", static_cast<double>(f.steps)},
@@ -53,19 +55,22 @@ std::vector<std::pair<std::string, double>> named_figures(const Scene& scene, co
 
 std::vector<std::string> figure_names(const Scene& scene) {
   auto names = error_names(scene.compare);
+  for (const auto& name : comparison_figure_names(scene.compare)) names.push_back(name);
   for (const auto& [name, value] : named_figures(scene, {})) names.push_back(name);
   return names;
 }
 
 std::string summary_json(const Scene& scene, const RunFigures& f) {
-  toml::table errors, provenance;
+  toml::table errors, compared, provenance;
   for (const auto& [name, value] : f.errors) errors.insert(name, value);
+  for (const auto& [name, value] : f.compared) compared.insert(name, value);
   for (const auto& [name, value] : build_info()) provenance.insert(name, value);
   provenance.insert("scene", scene.resolved);
   const toml::table summary{
       {"name", scene.name},
       {"dimension", scene.dimension},
       {"errors", errors},
+      {"compared", compared},
       {"particles", f.particles},
       {"boundary_nodes", f.boundary_nodes},
       {"steps", f.steps},
@@ -120,6 +125,7 @@ void print_report(const Scene& scene, const RunFigures& f) {
       fmt::print("{}\n", line);
     }
   }
+  for (const auto& [name, value] : f.compared) fmt::print("{:<12}{:>12.4f}\n", name, value);
   fmt::print("{} steps in {:.3g} s: {:.4g} ns per particle and step; peak memory {:.4g} MB\n", f.steps_timed,
              f.seconds, f.ns_per_particle_step(), static_cast<double>(peak_bytes()) / 1e6);
   const auto& b = f.balance;
