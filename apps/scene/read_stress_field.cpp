@@ -137,6 +137,10 @@ StressFieldSpec read_stress_field(TableReader& r, const Scene& scene) {
   if (given.size() > 1)
     r.fail(*r.source().get(given[1]), given[1],
            fmt::format("beside '{}': give one of {}", given[0], fmt::join(stress_field_keys, ", ")));
+  if (given.empty())
+    r.missing("pressure",
+              fmt::format("a number in Pa; or one of {}",
+                          fmt::join(stress_field_keys.begin() + 1, stress_field_keys.end(), ", ")));
   if (r.has("affine"))
     return read_affine_table<6>(r.table("affine"), 6, scene.dimension,
                                 "Pa, tension positive: xx yy zz xy yz xz");
