@@ -6,6 +6,7 @@
 #include <vsb/kernels/balance.hpp>
 #include <vsb/kernels/flag_boundary_particles.hpp>
 #include <vsb/kernels/health.hpp>
+#include <vsb/kernels/self_balance.hpp>
 
 #include "support.hpp"
 
@@ -95,6 +96,7 @@ void run_everything(Scatter strategy) {
   const Original original{pressure, grid, state.occupancy.cells, 1u, 2};
   REQUIRE(step(Exec(), state, bodies, basis, original, options) == -1);
   balance(Exec(), state, bodies, basis, pressure, options);
+  balancing_force(Exec(), block.particles, pressure, 1u, grid.lower);
   REQUIRE(find_invalid(Exec(), block.particles).particle == -1);
   edit(block, [](const auto& particles) { particles.volume(0) = -1; });
   REQUIRE(find_invalid(Exec(), block.particles).particle == 0);
@@ -126,6 +128,7 @@ TEST_CASE("every label starts with vsb::") {
         "reduce: vsb::mark_underfilled_cells", "for: vsb::add_underfilled_cells", "reduce: vsb::find_invalid",
         "scan: vsb::scan_offsets", "for: vsb::update_stress", "for: vsb::surface_force",
         "for: vsb::move_surface_points", "for: vsb::subtract_cell_virtual_stress", "for: vsb::node_balance",
+        "for: vsb::divergence_moments",
         "allocation: vsb::particles", "allocation: vsb::bin_sums"}) {
     CAPTURE(report);
     CHECK(seen.count(report) == 1);
