@@ -9,7 +9,6 @@ Writes resultant.png beside the table and prints its path.
 """
 import argparse
 import csv
-import math
 import pathlib
 import sys
 
@@ -39,7 +38,7 @@ def main():
         for column, name, colour in (("all_force", 'nodes = "all"', OURS), ("boundary_force", 'nodes = "boundary"', EXACT)):
             values = [max(FLOOR, float(row[column])) for row in of]
             axis.hist(values, bins=bins, color=colour, alpha=0.85,
-                      label=f"{name}: largest 1e{math.log10(max(values)):.1f}")
+                      label=f"{name}: largest {max(values):.0e}")
         axis.set_xscale("log")
         axis.set_title(f"{len(of)} bodies in {dimension}D")
         axis.set_xlabel("|net force| / (pressure x area)")

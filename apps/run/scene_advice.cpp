@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace vsb::app {
 
@@ -40,12 +41,17 @@ bool moves_as_a_whole(const Scene& scene) {
   return false;
 }
 
-/// The fewest particles per cell and direction of a body, for a lattice that follows the cells.
-int fewest_per_cell(const BodySpec& body, int dimension) {
-  const auto* cells = std::get_if<CellLattice>(&body.lattice);
-  if (!cells) return 2;
-  const auto& n = cells->particles_per_cell;
-  return *std::min_element(n.begin(), n.begin() + dimension);
+/// The fewest particles per cell and direction of a body, where its lattice follows the axes of the grid.
+double fewest_per_cell(const Scene& scene, const BodySpec& body) {
+  double fewest = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < static_cast<size_t>(scene.dimension); ++i) {
+    if (const auto* cells = std::get_if<CellLattice>(&body.lattice))
+      fewest = std::min<double>(fewest, cells->particles_per_cell[i]);
+    const auto* uniform = std::get_if<UniformLattice>(&body.lattice);
+    if (uniform && !scene.grid.mapped())
+      fewest = std::min(fewest, scene.grid.spacing[i] / uniform->spacing[i]);
+  }
+  return fewest;
 }
 
 /// Of kappa with the re-map of the velocity (MUSL) and the linear basis, however little of a cell is filled.
@@ -76,11 +82,12 @@ std::vector<std::string> scene_advice(const Scene& scene) {
                     "that no face holds) brakes that motion too: set it to 0",
                     scene.method.damping));
   for (const auto& body : scene.bodies)
-    if (fewest_per_cell(body, scene.dimension) < 2)
-      advice.push_back(fmt::format(
-          "body '{}' has 1 particle per cell in a direction: cells open up where it stretches, and motions "
-          "that such particles do not resist remain; give particles_per_cell = 2 or more",
-          body.name));
+    if (const double n = fewest_per_cell(scene, body); n < 2 - 1e-9)
+      advice.push_back(
+          fmt::format("body '{}' has {:.3g} < 2 particles per cell in a direction: cells open up where it "
+                      "stretches, and motions "
+                      "that such particles do not resist remain; give particles_per_cell = 2 or more",
+                      body.name, n));
   if (scene.time.kappa > largest_stable_kappa)
     advice.push_back(
         fmt::format("time.kappa = {:.4g} is above the stability limit of about {:g}; give a smaller one",

@@ -24,7 +24,7 @@ struct RandomShape {
     for (int n = 0; n < count; ++n) {
       Part part{random.index(2) == 0, n == 0 || random.index(2) == 0, {}, {}};
       for (int i = 0; i < Dim; ++i) {
-        part.half[i] = (n == 0 ? random(0.6, 0.75) : random(0.15, 0.4)) * reach;
+        part.half[i] = (n == 0 ? random(0.65, 0.85) : random(0.15, 0.4)) * reach;
         part.center[i] = n == 0 ? 0 : random(-0.5, 0.5) * reach;
       }
       parts.push_back(part);
@@ -55,7 +55,7 @@ struct RandomBody {
   Vector<Dim, double> center;  ///< of the shape
   double spacing, area;        ///< of the lattice; of the faces between a lattice cell in and one out, m
 
-  explicit RandomBody(unsigned seed, int half_width_in_cells = 6) : half_width(half_width_in_cells) {
+  explicit RandomBody(unsigned seed, int half_width_in_cells = 7) : half_width(half_width_in_cells) {
     Random random(seed);
     const RandomShape<Dim> shape(random, half_width);
     Vector<Dim, double> lower;

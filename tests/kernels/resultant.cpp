@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// The net force and torque of a uniform pressure on 200 random closed bodies, at the boundary nodes and at
-/// all of them. With VSB_RESULTANT_CSV=FILE the figures are written to a file, which apps/plot_resultant.py
-/// draws.
+/// all of them; they are the same for the few bodies all of whose nodes are boundary nodes. With
+/// VSB_RESULTANT_CSV=FILE the figures are written to a file, which apps/plot_resultant.py draws.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

@@ -110,6 +110,13 @@ class Resultants(FieldTest):
                   for n in ("1", "3")}
         self.assertEqual(len(hashes), 1)
 
+    def test_no_void_cell_is_needed_beyond_the_surface(self):
+        block = "{ box = { lower = [-4.1, -2.0], upper = [3.0, 2.0] } }"
+        refused = vsb("check", self.disc("pressure = 1e5", block))
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("open face x_min", refused.stderr)
+        self.assertLess(max(map(abs, self.run_scene(self.disc("pressure = 1e5\nnodes = 'all'", block))["net_force"])), 1e-9)
+
     def test_time_functions_and_sums(self):
         water = 'nodes = "all"\nhydrostatic = { unit_weight = 1e4, level = 5.0 }\n'
         force = lambda traction: self.run_scene(self.disc(traction, kappa=1e-6))["net_force"][1]  # nothing moves
@@ -259,8 +266,11 @@ class Warnings(FieldTest):
 
     def test_particles_per_cell_and_kappa(self):
         scene = self.disc("pressure = 1e5")
-        self.assertIn("body 'body 1' has 1 particle per cell in a direction", self.warnings(scene, "--set", "body[0].particles_per_cell=[3, 1]"))
+        self.assertIn("body 'body 1' has 1 < 2 particles per cell in a direction", self.warnings(scene, "--set", "body[0].particles_per_cell=[3, 1]"))
         self.assertEqual(self.warnings(scene, "--set", "body[0].particles_per_cell=2"), "")
+        lattice = self.write(scene.read_text().replace("particles_per_cell = 4", "lattice.uniform = { spacing = 0.3 }"), "l.toml")
+        self.assertIn("1.67 < 2 particles per cell in a direction", self.warnings(lattice))
+        self.assertEqual(self.warnings(lattice, "--set", "body[0].lattice.uniform.spacing=0.25"), "")
         self.assertIn("time.kappa = 1.4 is above the stability limit of about 1.3", self.warnings(scene, "--set", "time.kappa=1.4"))
         self.assertEqual(self.warnings(scene, "--set", "time.kappa=1.3"), "")
 
