@@ -197,18 +197,22 @@ struct MarkNodes {
   int reach;  ///< of the basis
   BoundaryNodes<Device> tractions;
   BoundaryNodes<Device> boundary;
+  TractionMask conservative;
 
   KOKKOS_FUNCTION void operator()(int i, int& count) const {
     const int r = i / tiling.words, w = i % tiling.words;
     const Vector<2, int> at{{r % tiling.node_rows[0], r / tiling.node_rows[0]}};
     const Vector<2, int> from{{at[0] - 1 - reach, at[1] - 1 - reach}}, to{{at[0] + reach, at[1] + reach}};
-    const std::uint64_t active = dilated_word(bits.occupied, tiling, w, from, to, reach, 1 + reach);
-    const std::uint64_t marked = active & tiling.existing(at, w, 1) &
-                                 dilated_word(bits.boundary, tiling, w, from, to, reach, 1 + reach);
+    const std::uint64_t active = tiling.existing(at, w, 1) &
+                                 dilated_word(bits.occupied, tiling, w, from, to, reach, 1 + reach);
+    const std::uint64_t marked =
+        active & dilated_word(bits.boundary, tiling, w, from, to, reach, 1 + reach);
     const int nodes = math::min(tiling.cells_x + 1 - 64 * w, 64);
     for (int b = 0; b < nodes; ++b) {
       const int node = r * (tiling.cells_x + 1) + 64 * w + b;
-      boundary(node) = marked >> b & 1 ? tractions(node) : 0;
+      boundary(node) = marked >> b & 1   ? tractions(node)
+                       : active >> b & 1 ? tractions(node) & conservative
+                                         : 0;
       if (boundary(node) != 0) ++count;
     }
   }
@@ -226,12 +230,14 @@ void mark_occupied_cells(const Exec& exec, const Particles<Dim, Real, Device>& p
 }
 
 /// Overwrites boundary[node] with tractions[node] at the nodes of N1 and with 0 elsewhere. tractions[node]
-/// says which tractions are declared at the place of a node (bit k: traction k). All particles must lie in
-/// the grid. Returns the number of nodes, ghost nodes aside, at which a traction acts; waits for the device.
+/// says which tractions are declared at the place of a node (bit k: traction k); those of `conservative` act
+/// at all active nodes, of N1 or not. All particles must lie in the grid. Returns the number of nodes, ghost
+/// nodes aside, at which a traction acts; waits for the device.
 template <class Exec, class Basis, int Dim, class Real, class Device>
 int mark_boundary_nodes(const Exec& exec, const Particles<Dim, Real, Device>& particles,
                         const CellBits<Device>& bits, const Basis& basis,
-                        const BoundaryNodes<Device>& tractions, const BoundaryNodes<Device>& boundary) {
+                        const BoundaryNodes<Device>& tractions, const BoundaryNodes<Device>& boundary,
+                        TractionMask conservative = 0) {
   const auto tiling = BitRows<Dim>::of(basis);
   const Kokkos::RangePolicy<Exec> over_cell_words(exec, 0, tiling.cell_row_count() * tiling.words);
   const Kokkos::RangePolicy<Exec> over_node_words(exec, 0, tiling.node_row_count() * tiling.words);
@@ -248,7 +254,7 @@ int mark_boundary_nodes(const Exec& exec, const Particles<Dim, Real, Device>& pa
                          kernel::AddUnderfilled<Device>{bits, tiling.words});
   int count = 0;
   Kokkos::parallel_reduce("vsb::mark_boundary_nodes", over_node_words,
-                          kernel::MarkNodes<Dim, Device>{bits, tiling, Basis::reach, tractions, boundary},
+                          kernel::MarkNodes<Dim, Device>{bits, tiling, Basis::reach, tractions, boundary, conservative},
                           count);
   mirror_masks(exec, basis, boundary);
   exec.fence();

@@ -20,6 +20,7 @@ struct Occupancy {
   CellBits<Device> cells;
   BoundaryNodes<Device> tractions;  ///< [node]: the tractions declared at the node's place
   BoundaryNodes<Device> boundary;   ///< [node]: the tractions that act there, N1 of Algorithm 1
+  TractionMask conservative = 0;    ///< the tractions that act at all active nodes, where they are declared
   int boundary_node_count = 0;
   double minimum_fill = 0;  ///< of a cell's volume, see set_fill_criterion; 0: no criterion
 };
@@ -81,7 +82,8 @@ int update_occupancy(const Exec& exec, const Particles<Dim, Real, Device>& parti
                                                                      o.minimum_fill, o.cells.underfilled);
   if (where.changed && o.cells.outside.size() > 0) update_outside(exec, particles, o.cells, basis);
   if (where.changed || refilled)
-    o.boundary_node_count = mark_boundary_nodes(exec, particles, o.cells, basis, o.tractions, o.boundary);
+    o.boundary_node_count =
+        mark_boundary_nodes(exec, particles, o.cells, basis, o.tractions, o.boundary, o.conservative);
   return -1;
 }
 

@@ -66,22 +66,6 @@ struct UniformVirtualStress : ActsOnParticles {
   }
 };
 
-/// Uniform tensors, and one exact stress field in equilibrium, such as that of an infinite
-/// body around the modelled part: its divergence is zero.
-template <class Exact, int Dim, class Real>
-struct UniformOrExactVirtualStress : ActsOnParticles {
-  UniformVirtualStress<Dim, Real> uniform;
-  Exact exact;            ///< with stress(x), Pa, tension positive
-  Real factor;            ///< on the exact stress, at this time
-  TractionMask is_exact;  ///< the tractions to which it belongs; their uniform tensors are zero
-
-  KOKKOS_FUNCTION VirtualStressValue<Dim, Real> at(const Vector<Dim, Real>& x, TractionMask mask) const {
-    auto value = uniform.at(x, mask);
-    if (mask & is_exact) value.stress += factor * exact.stress(x);
-    return value;
-  }
-};
-
 /// Tractions of `field` that act on surface points only; particles skip the virtual stress at compile time.
 template <class Field>
 struct OnSurfacePoints {

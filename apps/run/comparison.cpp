@@ -168,6 +168,22 @@ ExactFields exact_fields(const EllipseComparison& c, const Scene& scene, const S
   return exact;
 }
 
+/// What is compared but is no error: the mean hoop stress over the exact one.
+Errors other_figures(const CylinderComparison& c, const Scene& scene, const Snapshot& s) {
+  const auto solution = solution_of(c, scene);
+  double hoop = 0, exact = 0;
+  for (size_t p = 0; p < s.count(); ++p) {
+    const auto x = in_plane(s.position, p);
+    hoop += s.volume[p] * to_polar(in_plane_stress(s.cauchy_stress, p), x[0], x[1]).tt;
+    exact += s.volume[p] * solution.stress(std::sqrt(dot(x, x))).tt;
+  }
+  return {{"hoop_ratio", hoop / exact}};
+}
+template <class Solution>
+Errors other_figures(const Solution&, const Scene&, const Snapshot&) {
+  return {};
+}
+
 /// The weights of particles in norms of the stress.
 std::vector<double> weights(const ColumnComparison&, const Snapshot& s) {
   return std::vector<double>(s.count(), 1);
@@ -192,7 +208,7 @@ ComparisonResult compare(const Solution& c, const Scene& scene, const Snapshot& 
     const CellMeans means = cell_means(scene, s);
     add(stress_errors(c, scene, {means.position, means.cauchy_stress, means.volume}), "_cell_mean");
   }
-  ComparisonResult result{{}, exact_fields(c, scene, s)};
+  ComparisonResult result{{}, exact_fields(c, scene, s), other_figures(c, scene, s)};
   for (const auto& name : error_names(scene)) result.errors.emplace_back(name, errors.at(name));
   return result;
 }
@@ -201,6 +217,11 @@ ComparisonResult compare(const std::monostate&, const Scene&, const Snapshot&) {
 }
 
 }  // namespace
+
+std::vector<std::string> comparison_figure_names(const Comparison& comparison) {
+  if (std::holds_alternative<CylinderComparison>(comparison)) return {"hoop_ratio"};
+  return {};
+}
 
 ComparisonResult compare_with_exact(const Scene& scene, const Snapshot& snapshot) {
   return std::visit([&](const auto& c) { return compare(c, scene, snapshot); }, scene.compare);

@@ -22,7 +22,11 @@ struct ExactFields {
 struct ComparisonResult {
   std::vector<std::pair<std::string, double>> errors;  ///< name -> norm; none without a comparison
   ExactFields exact;
+  std::vector<std::pair<std::string, double>> figures;  ///< name -> what is compared but is no error
 };
+
+/// The names of the figures that a comparison yields beside its errors.
+std::vector<std::string> comparison_figure_names(const Comparison& comparison);
 
 /// Evaluates the scene's comparison at the particles' current positions (the column's at their initial ones).
 /// The norms of the recovered stress, where the scene asks for them, need snapshot.recovered_stress.

@@ -68,6 +68,16 @@ Point force_on(const Stress6& s, const Point& area) {
           s[5] * area[0] + s[4] * area[1] + s[2] * area[2]};
 }
 
+template <int Dim>
+Stress6 stress_at(const Scene& scene, const TractionSpec& traction, const Point& x) {
+  Vector<Dim, double> place;
+  for (size_t i = 0; i < Dim; ++i) place[static_cast<int>(i)] = x[i];
+  const auto s = stress_field<Dim, double>(scene, traction.field).at(place).stress;
+  Stress6 stress{};
+  for (size_t c = 0; c < SymmetricTensor<Dim, double>::size; ++c) stress[c] = s[static_cast<int>(c)];
+  return stress;
+}
+
 }  // namespace
 
 TractionMask imposed_by(const Scene& scene, Imposition imposition) {
@@ -116,9 +126,9 @@ std::vector<LoadedPoint> loaded_points(const Scene& scene, const PlacedParticles
 }
 
 Stress6 full_stress(const Scene& scene, const TractionSpec& traction, const Point& x) {
-  if (!traction.exact) return traction.virtual_stress;
-  const auto s = ellipse_field<double>(scene, *traction.exact).stress({{x[0], x[1]}});
-  return {s[0], s[1], s[2], s[3], 0, 0};
+  return scene.dimension == 1   ? stress_at<1>(scene, traction, x)
+         : scene.dimension == 2 ? stress_at<2>(scene, traction, x)
+                                : stress_at<3>(scene, traction, x);
 }
 
 std::vector<Resultant> exact_resultants(const Scene& scene) {

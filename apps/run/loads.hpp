@@ -9,8 +9,8 @@
 #include <algorithm>
 #include <map>
 
+#include <vsb/kernels/self_balance.hpp>
 #include <vsb/kernels/step.hpp>
-#include <vsb/physics/exact_ellipse.hpp>
 #include "run/body_surface.hpp"
 #include "run/place_particles.hpp"
 #include "run/simulation.hpp"
@@ -41,15 +41,11 @@ struct Resultant {
   Point force{}, torque{};
 };
 std::vector<Resultant> exact_resultants(const Scene& scene);
-/// sbar of a traction at full load, also where it is an exact field.
+/// sbar of a traction at full load.
 Stress6 full_stress(const Scene& scene, const TractionSpec& traction, const Point& x);
-/// The exact field of an ellipse in the material of the first body.
-template <class Real>
-ExactEllipse<Real> ellipse_field(const Scene& scene, const EllipseSpec& e) {
-  return {static_cast<Real>(e.semi_major), static_cast<Real>(e.semi_minor),
-          static_cast<Real>(e.pressure),   static_cast<Real>(e.far_stress),
-          static_cast<Real>(e.far_ratio),  static_cast<Real>(scene.bodies.front().material.poisson_ratio)};
-}
+/// The field of a traction at full load as the kernels take it; `scene` says of what its bodies are.
+template <int Dim, class Real>
+StressField<Dim, Real> stress_field(const Scene& scene, const StressFieldSpec& spec);
 
 /// The virtual stress of a scene's tractions at a time.
 template <int Dim, class Real>
@@ -60,62 +56,113 @@ class Loads {
                   imposed_by(scene, Imposition::virtual_stress_original)),
         original_(imposed_by(scene, Imposition::virtual_stress_original)),
         gauss_points_(scene.method.cell_gauss_points) {
-    field_.uniform.count = static_cast<int>(scene.tractions.size());
-    for (size_t k = 0; k < scene.tractions.size(); ++k)
-      if (scene.tractions[k].exact) {
-        field_.is_exact = TractionMask(1) << k;
-        if constexpr (Dim == 2) field_.exact = ellipse_field<Real>(scene, *scene.tractions[k].exact);
+    uniform_.count = fields_.count = static_cast<int>(scene.tractions.size());
+    for (size_t k = 0; k < scene.tractions.size(); ++k) {
+      const auto& traction = scene.tractions[k];
+      if (!std::holds_alternative<Stress6>(traction.field)) {
+        fields_.field[k] = stress_field<Dim, Real>(scene, traction.field);
+        all_uniform_ = false;
       }
+      if (traction.all_nodes) conservative_ |= TractionMask(1) << k;
+      if (traction.self_balanced) balanced_ |= TractionMask(1) << k;
+    }
   }
 
-  /// The tractions that act through boundary nodes, by the virtual stress method.
+  /// The tractions that act through nodes, by the virtual stress method.
   TractionMask on_nodes() const { return on_nodes_; }
+  /// Of these, the ones that act at all active nodes.
+  TractionMask conservative() const { return conservative_; }
 
   void set_time(const Scene& scene, double t) {
     for (size_t k = 0; k < scene.tractions.size(); ++k) {
-      const auto& traction = scene.tractions[k];
-      const double factor = traction.time(t);
-      for (size_t c = 0; c < SymmetricTensor<Dim, Real>::size; ++c)
-        field_.uniform.stress[k][static_cast<int>(c)] =
-            static_cast<Real>(traction.exact ? 0.0 : factor * traction.virtual_stress[c]);
-      if (traction.exact) field_.factor = static_cast<Real>(factor);
+      const double factor = scene.tractions[k].time(t);
+      if (const auto* full = std::get_if<Stress6>(&scene.tractions[k].field)) {
+        for (size_t c = 0; c < SymmetricTensor<Dim, Real>::size; ++c)
+          uniform_.stress[k][static_cast<int>(c)] = static_cast<Real>(factor * (*full)[c]);
+        fields_.field[k] = UniformStress<Dim, Real>{uniform_.stress[k]};
+        fields_.factor[k] = 1;  // rounded once: the same bits as in uniform_
+      } else {
+        fields_.factor[k] = static_cast<Real>(factor);
+      }
     }
+  }
+
+  /// Takes the resultant out of the self-balanced tractions, for particles where they are now. `near` is any
+  /// point near them.
+  template <class Exec, class Device>
+  void balance(const Exec& exec, const Particles<Dim, Real, Device>& particles,
+               const Vector<Dim, Real>& near) {
+    if (balanced_ == 0 || all_uniform_) return;  // a uniform stress has no resultant at all nodes
+    fields_.balanced = 0;
+    fields_.balance = balancing_force(exec, particles, fields_, balanced_, near);
+    fields_.balanced = balanced_;
   }
 
   /// Calls work(field) with the kernels' field for these tractions; WithOriginal: by the original method too.
   template <bool WithOriginal, class Grid, class Device, class Work>
   auto with_field(const Grid& grid, const CellBits<Device>& cells, const Work& work) const {
-    if constexpr (Dim == 2 && std::is_same<Real, double>::value) {
-      if (field_.is_exact) return by_method<WithOriginal>(field_, grid, cells, work);
+    using Fields = TractionFields<Dim, Real>;
+    if (fields_.count == 0) return work(NoVirtualStress{});
+    if (on_nodes_ == 0) return work(OnSurfacePoints<Fields>{fields_});
+    if constexpr (WithOriginal) {
+      if (original_ != 0)
+        return work(
+            OriginalVirtualStress<Fields, Grid, Device>{fields_, grid, cells, original_, gauss_points_});
     }
-    if (field_.uniform.count == 0) return work(NoVirtualStress{});
-    return by_method<WithOriginal>(field_.uniform, grid, cells, work);
+    return all_uniform_ ? work(uniform_) : work(fields_);
   }
 
  private:
-  /// Stands in for the exact field where there is none.
-  struct NoExactField {
-    KOKKOS_FUNCTION SymmetricTensor<Dim, Real> stress(const Vector<Dim, Real>&) const {
-      return SymmetricTensor<Dim, Real>::zero();
-    }
-  };
-  using Exact = std::conditional_t<Dim == 2, ExactEllipse<Real>, NoExactField>;
-
-  template <bool WithOriginal, class Field, class Grid, class Device, class Work>
-  auto by_method(const Field& field, const Grid& grid, const CellBits<Device>& cells,
-                 const Work& work) const {
-    if (on_nodes_ == 0) return work(OnSurfacePoints<Field>{field});
-    if constexpr (WithOriginal) {
-      if (original_ != 0)
-        return work(OriginalVirtualStress<Field, Grid, Device>{field, grid, cells, original_, gauss_points_});
-    }
-    return work(field);
-  }
-
-  TractionMask on_nodes_, original_;
+  TractionMask on_nodes_, original_, conservative_ = 0, balanced_ = 0;
   int gauss_points_;
-  UniformOrExactVirtualStress<Exact, Dim, Real> field_{};
+  bool all_uniform_ = true;
+  UniformVirtualStress<Dim, Real> uniform_{};
+  TractionFields<Dim, Real> fields_{};
 };
+
+template <int Dim, class Real>
+SymmetricTensor<Dim, Real> to_tensor(const Stress6& s) {
+  SymmetricTensor<Dim, Real> t;
+  for (size_t c = 0; c < SymmetricTensor<Dim, Real>::size; ++c)
+    t[static_cast<int>(c)] = static_cast<Real>(s[c]);
+  return t;
+}
+
+template <int Dim, class Real>
+StressField<Dim, Real> stress_field(const Scene& scene, const StressFieldSpec& spec) {
+  const auto number = [](double x) { return static_cast<Real>(x); };
+  const auto vector = [&](const Point& p) {
+    Vector<Dim, Real> v;
+    for (size_t i = 0; i < Dim; ++i) v[static_cast<int>(i)] = number(p[i]);
+    return v;
+  };
+  const auto tensor = [](const Stress6& s) { return to_tensor<Dim, Real>(s); };
+  if (const auto* uniform = std::get_if<Stress6>(&spec)) return UniformStress<Dim, Real>{tensor(*uniform)};
+  if (const auto* affine = std::get_if<Affine<Stress6>>(&spec)) {
+    AffineStress<Dim, Real> field{tensor(affine->value), {}};
+    for (size_t k = 0; k < Dim; ++k) field.gradient[k] = tensor(affine->gradient[k]);
+    return field;
+  }
+  if (const auto* h = std::get_if<HydrostaticSpec>(&spec))
+    return HydrostaticStress<Dim, Real>{number(h->unit_weight), number(h->level), number(h->width),
+                                        vector(h->up)};
+  if (const auto* b = std::get_if<RadialBlendSpec>(&spec)) {
+    Point across{1, 1, 1};
+    if (b->axis >= 0) across[static_cast<size_t>(b->axis)] = 0;
+    return RadialBlend<Dim, Real>{vector(b->center),       vector(across),   number(b->inner_radius),
+                                  number(b->outer_radius), tensor(b->inner), tensor(b->outer)};
+  }
+  if (const auto* b = std::get_if<PlanarBlendSpec>(&spec))
+    return PlanarBlend<Dim, Real>{vector(b->start), vector(b->end) - vector(b->start), tensor(b->at_start),
+                                  tensor(b->at_end)};
+  if constexpr (Dim == 2) {
+    const auto& e = std::get<EllipseSpec>(spec);
+    return ExactEllipse<Real>{number(e.semi_major), number(e.semi_minor),
+                              number(e.pressure),   number(e.far_stress),
+                              number(e.far_ratio),  number(scene.bodies.front().material.poisson_ratio)};
+  }
+  return {};
+}
 
 template <int Dim, class Grid>
 std::vector<LoadedPoint> conforming_points(const Scene& scene, const Grid& grid,

@@ -30,8 +30,9 @@ double loads_settled_at(const Scene& scene) {
   return t;
 }
 
-void print_advice(const Scene& scene) {
+void print_advice(const Scene& scene, const Simulation& simulation) {
   for (const auto& advice : scene_advice(scene)) fmt::print(stderr, "vsb: warning: {}\n", advice);
+  for (const auto& advice : simulation.advice()) fmt::print(stderr, "vsb: warning: {}\n", advice);
 }
 
 void announce_discarded_checkpoint(const Results& results) {
@@ -52,7 +53,9 @@ void write_frames(Results& results, const Scene& scene, Simulation& simulation) 
 
 void take_state(RunFigures& figures, const Scene& scene, Simulation& simulation) {
   figures.state_hash = state_hash(simulation.save());
-  figures.errors = compare_with_exact(scene, take_snapshot(scene, simulation)).errors;
+  const auto comparison = compare_with_exact(scene, take_snapshot(scene, simulation));
+  figures.errors = comparison.errors;
+  figures.compared = comparison.figures;
   figures.cut = simulation.cut_volume();
   figures.particles = simulation.particle_count();
   figures.boundary_nodes = simulation.boundary_nodes();

@@ -12,8 +12,8 @@ namespace vsb::app {
 /// The time from which on all loads are constant, s; infinite where one never is.
 double loads_settled_at(const Scene& scene);
 
-/// Prints the scene's advice as warnings on standard error.
-void print_advice(const Scene& scene);
+/// Prints the advice about a scene and its simulation as warnings on standard error.
+void print_advice(const Scene& scene, const Simulation& simulation);
 
 /// Says which checkpoint a run that does not resume will remove, where there is one.
 void announce_discarded_checkpoint(const Results& results);

@@ -84,7 +84,7 @@ RunResult run(const Scene& scene, const RunOptions& options) {
   const InterruptGuard guard;  // from the first file on
   results.begin(resumed_step);
   const bool reports = !options.quiet && !options.progress_only;
-  if (!options.progress_only) print_advice(scene);
+  if (!options.progress_only) print_advice(scene, *simulation);
   if (reports) {
     fmt::print("{}: {} particles, {} boundary nodes, dt {:.6g} s, {} {} steps, results in {}\n", scene.name,
                simulation->particle_count(), simulation->boundary_nodes(), scene.time.dt,
@@ -175,7 +175,7 @@ RunResult run_scene(const Scene& scene, const RunOptions& options) {
 
 void check_scene(const Scene& scene) {
   const auto simulation = make_simulation(scene);
-  print_advice(scene);
+  print_advice(scene, *simulation);
   fmt::print("# {} particles, {} boundary nodes, {:.3g} MB of state\n", simulation->particle_count(),
              simulation->boundary_nodes(), static_cast<double>(simulation->state_bytes()) / 1e6);
   print_cut_volume(simulation->cut_volume(), "# ");

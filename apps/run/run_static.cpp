@@ -43,7 +43,7 @@ RunResult run_static(const Scene& scene, const RunOptions& options) {
   const bool reports = !options.quiet && !options.progress_only;
   Scene without_steps = scene;
   without_steps.time.until_static.reset();  // what the way there would need is of no concern here
-  if (!options.progress_only) print_advice(without_steps);
+  if (!options.progress_only) print_advice(without_steps, *simulation);
   if (reports)
     fmt::print(
         "{}: {} particles, {} boundary nodes, static solution under the loads at {:.6g} s, results in {}\n",

@@ -5,30 +5,58 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace vsb::app {
 
 namespace {
 
-double largest(const Stress6& stress) {
-  double most = 0;
-  for (const double s : stress) most = std::max(most, std::abs(s));
-  return most;
-}
-
 /// Of the tractions, and of each body's weight if it were as high as the grid.
 double largest_load(const Scene& scene) {
   double load = 0;
-  for (const auto& traction : scene.tractions) {
-    load = std::max(load, largest(traction.virtual_stress));
-    if (const auto& e = traction.exact)
-      load = std::max({load, e->pressure, std::abs(e->far_stress), std::abs(e->far_ratio * e->far_stress)});
-  }
   const auto box = bounding_box(scene.grid, scene.dimension);
+  for (const auto& traction : scene.tractions)
+    load = std::max(load, largest_stress(traction.field, box.lower, box.upper));
   for (const auto& body : scene.bodies)
     for (size_t i = 0; i < 3; ++i)
       load = std::max(load, body.density * std::abs(scene.gravity[i]) * (box.upper[i] - box.lower[i]));
   return load;
+}
+
+/// Whether a body moves as a whole, as far as a scene shows before it runs.
+bool moves_as_a_whole(const Scene& scene) {
+  for (const auto& body : scene.bodies)
+    if (body.velocity.value != Point{} || body.velocity.gradient != std::array<Point, 3>{}) return true;
+  const auto floats = [](const TractionSpec& t) {
+    return std::holds_alternative<HydrostaticSpec>(t.field) ||
+           std::holds_alternative<Affine<Stress6>>(t.field);
+  };
+  if (std::any_of(scene.tractions.begin(), scene.tractions.end(), floats)) return false;
+  for (size_t i = 0; i < 3; ++i) {
+    bool held = scene.gravity[i] == 0;
+    for (const auto& faces : scene.faces.fixed)  // a face of any direction may hold component i
+      for (const unsigned char fixed : faces) held = held || (fixed >> i & 1);
+    if (!held) return true;
+  }
+  return false;
+}
+
+/// The fewest particles per cell and direction of a body, where its lattice follows the axes of the grid.
+double fewest_per_cell(const Scene& scene, const BodySpec& body) {
+  double fewest = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < static_cast<size_t>(scene.dimension); ++i) {
+    if (const auto* cells = std::get_if<CellLattice>(&body.lattice))
+      fewest = std::min<double>(fewest, cells->particles_per_cell[i]);
+    const auto* uniform = std::get_if<UniformLattice>(&body.lattice);
+    if (uniform && !scene.grid.mapped())
+      fewest = std::min(fewest, scene.grid.spacing[i] / uniform->spacing[i]);
+  }
+  return fewest;
+}
+
+/// Of kappa with the re-map of the velocity (MUSL), however little of a cell is filled.
+double largest_stable_kappa(const Scene& scene) {
+  return scene.method.basis == BasisKind::quadratic_bspline ? 1.5 : 1.3;
 }
 
 }  // namespace
@@ -50,6 +78,22 @@ std::vector<std::string> scene_advice(const Scene& scene) {
     advice.emplace_back(
         "method.damping = 0: nothing takes the oscillation away, so the run may never become static; 0.05 to "
         "0.3 is usual");
+  if (scene.method.damping > 0 && moves_as_a_whole(scene))
+    advice.push_back(
+        fmt::format("method.damping = {:g} on a body that moves as a whole (an initial velocity, or gravity "
+                    "that no face holds) brakes that motion too: set it to 0",
+                    scene.method.damping));
+  for (const auto& body : scene.bodies)
+    if (const double n = fewest_per_cell(scene, body); n < 2 - 1e-9)
+      advice.push_back(
+          fmt::format("body '{}' has {:.3g} < 2 particles per cell in a direction: cells open up where it "
+                      "stretches, and motions "
+                      "that such particles do not resist remain; give particles_per_cell = 2 or more",
+                      body.name, n));
+  if (scene.time.kappa > largest_stable_kappa(scene))
+    advice.push_back(
+        fmt::format("time.kappa = {:.4g} is above the stability limit of about {:g}; give a smaller one",
+                    scene.time.kappa, largest_stable_kappa(scene)));
   return advice;
 }
 

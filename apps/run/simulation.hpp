@@ -93,6 +93,8 @@ class Simulation {
   virtual CutVolume cut_volume() const = 0;
   /// Of the boundary nodes of the moment; zeros without the filter.
   virtual VoidFilterReport void_filter() const = 0;
+  /// What looks wrong about the virtual stress fields, a sentence each; see run/field_advice.hpp.
+  virtual std::vector<std::string> advice() const = 0;
   /// Memory of particles, nodes and occupancy.
   virtual size_t state_bytes() const = 0;
 

@@ -13,6 +13,7 @@
 #include <vsb/kernels/static_solution.hpp>
 #include <vsb/kernels/unsupported_load.hpp>
 #include "run/basis_of.hpp"
+#include "run/field_advice.hpp"
 #include "run/grid_lines.hpp"
 #include "run/loads.hpp"
 #include "run/material_of.hpp"
@@ -67,6 +68,7 @@ class SimulationOf final : public Simulation {
         void_filter_effect(exec_, state_.particles, o.cells, basis_, o.tractions, o.boundary_node_count);
     return {effect.false_voids, effect.dropped_nodes};
   }
+  std::vector<std::string> advice() const override { return field_advice(scene_, placed_, occupied_cells()); }
 
   size_t state_bytes() const override {
     const auto& o = state_.occupancy;
@@ -82,7 +84,7 @@ class SimulationOf final : public Simulation {
 
   void advance(long long steps) override {
     for (long long n = 0; n < steps; ++n) {
-      loads_.set_time(scene_, static_cast<double>(step_ + 1) * scene_.time.dt);
+      set_loads(static_cast<double>(step_ + 1) * scene_.time.dt);
       const int lost = with_field(
           [&](const auto& field) { return vsb::step(exec_, state_, bodies_, basis_, field, options_); });
       if (lost >= 0) throw_lost(lost);
@@ -92,7 +94,7 @@ class SimulationOf final : public Simulation {
   }
 
   StaticSolution solve_static(double t, const std::function<bool(int, double)>& go_on) override {
-    loads_.set_time(scene_, t);
+    set_loads(t);
     locate();
     // What is left of an initial stress that balances the loads is round-off, which nothing need take up.
     particles_to_grid(exec_, state_.particles, state_.occupancy.bins, state_.nodes, state_.occupancy.boundary,
@@ -141,7 +143,7 @@ class SimulationOf final : public Simulation {
 
   BalanceReport balance() override { return balance_under_loads_at(time()); }
   BalanceReport balance_under_loads_at(double t) override {
-    loads_.set_time(scene_, t);
+    set_loads(t);
     locate();
     const auto b = with_field(
         [&](const auto& field) { return vsb::balance(exec_, state_, bodies_, basis_, field, options_); });
@@ -317,6 +319,11 @@ class SimulationOf final : public Simulation {
 
   double time() const { return static_cast<double>(step_) * scene_.time.dt; }
 
+  void set_loads(double t) {
+    loads_.set_time(scene_, t);
+    loads_.balance(exec_, state_.particles, to_vector(placed_.position.front()));
+  }
+
   template <class Work>
   auto with_field(const Work& work) const {
     return loads_.template with_field<Basis::reach == 0>(basis_.grid, state_.occupancy.cells, work);
@@ -383,16 +390,33 @@ class SimulationOf final : public Simulation {
           tractions_at(scene_, loads_.on_nodes(), node_position(scene_.grid, Dim, ijk_in_scene(node)));
     }
     Kokkos::deep_copy(state_.occupancy.tractions, mask);
+    state_.occupancy.conservative = loads_.conservative();
+  }
+
+  /// The cells of the scene's grid that hold particles.
+  OccupiedCells occupied_cells() const {
+    OccupiedCells cells;
+    cells.cells = {1, 1, 1};
+    size_t count = 1;
+    for (size_t i = 0; i < Dim; ++i) {
+      cells.cells[i] = scene_.grid.cells[i];
+      count *= static_cast<size_t>(scene_.grid.cells[i]);
+    }
+    cells.occupied.resize(count);
+    for (const Point& x : placed_.position) {
+      const auto cell = basis_.grid.cell_containing(to_vector(x));
+      int index = 0;
+      for (int i = Dim - 1; i >= 0; --i)
+        index = index * cells.cells[static_cast<size_t>(i)] + (cell[i] - Basis::reach);
+      cells.occupied[static_cast<size_t>(index)] = true;
+    }
+    return cells;
   }
 
   /// The points of the tractions that are not imposed through boundary nodes.
   void place_surface_points() {
     auto points = loaded_points(scene_, placed_);
-    std::vector<bool> occupied(static_cast<size_t>(basis_.grid.cell_count()));
-    for (const Point& x : placed_.position) {
-      occupied[static_cast<size_t>(basis_.grid.cell_index(basis_.grid.cell_containing(to_vector(x))))] = true;
-    }
-    const auto conforming = conforming_points<Dim>(scene_, basis_.grid, occupied);
+    const auto conforming = conforming_points<Dim>(scene_, basis_.grid, occupied_cells().occupied);
     points.insert(points.end(), conforming.begin(), conforming.end());
     if (points.empty()) return;
     auto& s = state_.surface;
@@ -453,7 +477,7 @@ class SimulationOf final : public Simulation {
       const auto shape = basis_.shape(to_vector(placed_.position[p]));
       for (int a = 0; a < Basis::support; ++a) {
         const auto ijk = basis_.grid.node_ijk(shape.node[a]);
-        if (declared(static_cast<size_t>(shape.node[a])) == 0) continue;
+        if ((declared(static_cast<size_t>(shape.node[a])) & ~loads_.conservative()) == 0) continue;
         for (int i = 0; i < Dim; ++i) {
           const auto& faces = scene_.faces.fixed[static_cast<size_t>(i)];
           const bool lower = ijk[i] == 0 && faces[0] == 0,

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "files/build_info.hpp"
+#include "run/comparison.hpp"
 #include "scene/toml_reader.hpp"
 
 namespace vsb::app {
@@ -39,6 +40,7 @@ double RunFigures::ns_per_particle_step() const {
 
 std::vector<std::pair<std::string, double>> named_figures(const Scene& scene, const RunFigures& f) {
   auto named = f.errors;
+  named.insert(named.end(), f.compared.begin(), f.compared.end());
   named.insert(named.end(), {{"particles", f.particles},
                              {"boundary_nodes", f.boundary_nodes},
                              {"steps", static_cast<double>(f.steps)},
@@ -59,19 +61,22 @@ std::vector<std::pair<std::string, double>> named_figures(const Scene& scene, co
 
 std::vector<std::string> figure_names(const Scene& scene) {
   auto names = error_names(scene);
+  for (const auto& name : comparison_figure_names(scene.compare)) names.push_back(name);
   for (const auto& [name, value] : named_figures(scene, {})) names.push_back(name);
   return names;
 }
 
 std::string summary_json(const Scene& scene, const RunFigures& f) {
-  toml::table errors, provenance;
+  toml::table errors, compared, provenance;
   for (const auto& [name, value] : f.errors) errors.insert(name, value);
+  for (const auto& [name, value] : f.compared) compared.insert(name, value);
   for (const auto& [name, value] : build_info()) provenance.insert(name, value);
   provenance.insert("scene", scene.resolved);
   toml::table summary{
       {"name", scene.name},
       {"dimension", scene.dimension},
       {"errors", errors},
+      {"compared", compared},
       {"particles", f.particles},
       {"boundary_nodes", f.boundary_nodes},
       {"solution", f.static_solution ? "static" : "explicit"},
@@ -145,6 +150,7 @@ void print_report(const Scene& scene, const RunFigures& f) {
       fmt::print("{}\n", line);
     }
   }
+  for (const auto& [name, value] : f.compared) fmt::print("{:<12}{:>12.4f}\n", name, value);
   const char* sweep = f.static_solution ? "iteration" : "step";
   fmt::print("{} {}s in {:.3g} s: {:.4g} ns per particle and {}; peak memory {:.4g} MB\n",
              f.steps_timed + f.iterations, sweep, f.seconds, f.ns_per_particle_step(), sweep,

@@ -25,6 +25,7 @@ struct RunFigures {
   BalanceReport balance;
   std::string state_hash;  ///< of the particles' bits at the end
   std::vector<std::pair<std::string, double>> errors;
+  std::vector<std::pair<std::string, double>> compared;  ///< figures of the comparison that are no errors
 
   /// Of a static solution: per particle and iteration.
   double ns_per_particle_step() const;

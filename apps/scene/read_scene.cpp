@@ -8,10 +8,12 @@
 #include <vsb/physics/exact_column.hpp>
 #include <vsb/physics/explicit_dynamics.hpp>
 #include <vsb/physics/linear_elastic.hpp>
+#include "scene/read_affine.hpp"
 #include "scene/read_basis.hpp"
 #include "scene/read_grid.hpp"
 #include "scene/read_lattice.hpp"
 #include "scene/read_region.hpp"
+#include "scene/read_stress_field.hpp"
 #include "scene/scene.hpp"
 #include "scene/toml_reader.hpp"
 #include "scene/units.hpp"
@@ -19,8 +21,6 @@
 namespace vsb::app {
 
 namespace {
-
-const std::vector<std::string> axis_names = {"x", "y", "z"};
 
 ElasticSpec read_material(TableReader r) {
   r.allow_only({"law", "youngs_modulus", "poisson_ratio"});
@@ -31,29 +31,6 @@ ElasticSpec read_material(TableReader r) {
   m.poisson_ratio = r.number("poisson_ratio", Range::inside(-1, 0.5));
   r.finish();
   return m;
-}
-
-/// A field that is constant (an array) or affine (a table with value and gradient, one row per direction).
-template <size_t N>
-Affine<std::array<double, N>> read_affine(TableReader& r, const std::string& key, size_t count, int dimension,
-                                          const std::string& unit) {
-  Affine<std::array<double, N>> field;
-  const auto copy = [](const std::vector<double>& from, std::array<double, N>& to) {
-    std::copy(from.begin(), from.end(), to.begin());
-  };
-  const toml::node* written = r.source().get(key);
-  if (!written || !written->is_table()) {
-    copy(r.numbers(key, count, Range::any(), std::vector<double>(count, 0.0), unit), field.value);
-    return field;
-  }
-  TableReader t = r.table(key);
-  copy(t.numbers("value", count, Range::any(), std::vector<double>(count, 0.0), unit), field.value);
-  for (size_t k = 0; k < static_cast<size_t>(dimension); ++k)
-    copy(
-        t.numbers("d" + axis_names[k], count, Range::any(), std::vector<double>(count, 0.0), unit + " per m"),
-        field.gradient[k]);
-  t.finish();
-  return field;
 }
 
 template <class Value>
@@ -162,19 +139,6 @@ TimeShape read_time_function(TableReader r) {
   return shape;
 }
 
-const std::vector<std::string> ellipse_keys = {"semi_major", "semi_minor", "pressure", "far_stress",
-                                               "far_ratio"};
-
-EllipseSpec read_ellipse(TableReader& r) {
-  EllipseSpec e{};
-  e.semi_major = r.number("semi_major", Range::positive(), {}, "m, along x");
-  e.semi_minor = r.number("semi_minor", Range::positive(), {}, "m");
-  e.pressure = r.number("pressure", Range::positive(), {}, "Pa in the hole, positive in compression");
-  e.far_stress = r.number("far_stress", Range::any(), {}, "Pa, -sigma_yy far away");
-  e.far_ratio = r.number("far_ratio", Range::any(), {}, "K = sigma_xx / sigma_yy far away");
-  return e;
-}
-
 Imposition read_imposition(TableReader& r) {
   static const std::vector<std::string> names = {"virtual_stress", "virtual_stress_original",
                                                  "boundary_particles", "material_points", "nodal"};
@@ -182,33 +146,36 @@ Imposition read_imposition(TableReader& r) {
   return static_cast<Imposition>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
-TractionSpec read_traction(TableReader r, int dimension, size_t number, TimeShape& time) {
+/// At which nodes a traction acts, and whether it is in balance with itself.
+void read_nodes(TableReader& r, const Scene& scene, TractionSpec& traction) {
+  traction.all_nodes = r.choice("nodes", {"boundary", "all"}, "boundary") == "all";
+  traction.self_balanced = r.boolean("self_balanced", false);
+  if (traction.all_nodes && traction.imposition != Imposition::virtual_stress)
+    r.fail(*r.source().get("nodes"), "nodes", "'all' is for imposition = \"virtual_stress\"");
+  if (traction.all_nodes && r.has("surface"))
+    r.fail(*r.source().get("surface"), "surface",
+           "with nodes = \"all\" the traction loads all surfaces at once, by the values of its field there; "
+           "leave "
+           "'surface' out");
+  if (!traction.self_balanced) return;
+  if (!traction.all_nodes) r.fail(*r.source().get("self_balanced"), "self_balanced", "needs nodes = \"all\"");
+  for (const auto& sides : scene.faces.fixed)
+    if (sides[0] != 0 || sides[1] != 0)
+      r.fail(*r.source().get("self_balanced"), "self_balanced",
+             "is for free bodies: a part that ends at a symmetry plane or a support has a resultant");
+}
+
+TractionSpec read_traction(TableReader r, const Scene& scene, size_t number, TimeShape& time) {
+  const int dimension = scene.dimension;
   TractionSpec traction;
-  r.allow_only({"name", "imposition", "pressure", "stress", "exact_ellipse", "surface", "layer",
-                "points_per_cell", "time"});
+  std::vector<std::string> keys = {"name",    "imposition", "nodes",           "self_balanced",
+                                   "surface", "layer",      "points_per_cell", "time"};
+  keys.insert(keys.end(), stress_field_keys.begin(), stress_field_keys.end());
+  r.allow_only(keys);
   traction.name = r.text("name", fmt::format("traction {}", number + 1));
   traction.imposition = read_imposition(r);
-  if (int(r.has("pressure")) + int(r.has("stress")) + int(r.has("exact_ellipse")) > 1) {
-    const std::string key = r.has("pressure") ? "pressure" : "stress";
-    r.fail(*r.source().get(key), key, "give one of pressure, stress and exact_ellipse");
-  }
-  if (r.has("exact_ellipse")) {
-    if (dimension != 2)
-      r.fail(*r.source().get("exact_ellipse"), "exact_ellipse", "is a field of plane strain, dimension = 2");
-    TableReader e = r.table("exact_ellipse");
-    e.allow_only(ellipse_keys);
-    traction.exact = read_ellipse(e);
-    e.finish();
-  } else if (r.has("stress")) {
-    const auto s =
-        r.numbers("stress", 6, Range::any(), {},
-                  "Pa, virtual stress, tension positive: xx yy zz xy yz xz; or pressure, or exact_ellipse");
-    std::copy(s.begin(), s.end(), traction.virtual_stress.begin());
-  } else {
-    const double p = r.number("pressure", Range::any(), {},
-                              "Pa, positive in compression; or stress (xx yy zz xy yz xz), or exact_ellipse");
-    traction.virtual_stress = {-p, -p, -p, 0, 0, 0};
-  }
+  traction.field = read_stress_field(r, scene);
+  read_nodes(r, scene, traction);
   traction.surface = read_region(r, "surface", dimension, true);
   traction.layer = everywhere();
   if (traction.imposition == Imposition::material_points)
@@ -395,7 +362,8 @@ Published read_published(TableReader r, const Scene& scene) {
 
 /// Whether anything strains or moves the bodies.
 bool is_loaded(const Scene& scene) {
-  const auto acts = [](const TractionSpec& t) { return t.exact || t.virtual_stress != Stress6{}; };
+  const auto box = bounding_box(scene.grid, scene.dimension);
+  const auto acts = [&](const TractionSpec& t) { return largest_stress(t.field, box.lower, box.upper) > 0; };
   const auto begins_loaded = [](const BodySpec& b) { return !is_zero(b.stress) || !is_zero(b.velocity); };
   return scene.gravity != Point{} || std::any_of(scene.tractions.begin(), scene.tractions.end(), acts) ||
          std::any_of(scene.bodies.begin(), scene.bodies.end(), begins_loaded);
@@ -432,15 +400,11 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
     scene.bodies.push_back(read_body(table, scene.grid, scene.dimension, scene.bodies.size()));
   if (scene.bodies.empty()) r.missing("body", "at least one table [[body]]");
   std::vector<TimeShape> time_shapes;
-  int exact_fields = 0;  // the kernels take one
   for (auto& table : r.tables("traction")) {
     if (scene.tractions.size() == max_tractions)
       r.fail(*document.get("traction"), "traction", fmt::format("at most {} tractions", max_tractions));
     time_shapes.emplace_back();
-    scene.tractions.push_back(
-        read_traction(table, scene.dimension, scene.tractions.size(), time_shapes.back()));
-    if (scene.tractions.back().exact && exact_fields++ > 0)
-      table.fail(*table.source().get("exact_ellipse"), "exact_ellipse", "at most one traction may have it");
+    scene.tractions.push_back(read_traction(table, scene, scene.tractions.size(), time_shapes.back()));
   }
   read_method(r.table("method"), scene);
   const auto keeps_gradient = [](const BodySpec& b) { return b.material.law == MaterialLaw::hencky; };

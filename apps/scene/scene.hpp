@@ -13,26 +13,10 @@
 #include "scene/grid_spec.hpp"
 #include "scene/lattice.hpp"
 #include "scene/region.hpp"
+#include "scene/stress_field.hpp"
 #include "scene/time_function.hpp"
 
 namespace vsb::app {
-
-/// Stress components in the order xx yy zz xy yz xz, Pa, tension positive.
-using Stress6 = std::array<double, 6>;
-
-/// value + sum_k gradient[k] x_k.
-template <class Value>
-struct Affine {
-  Value value{};
-  std::array<Value, 3> gradient{};
-
-  Value at(const Point& x) const {
-    Value v = value;
-    for (size_t k = 0; k < 3; ++k)
-      for (size_t c = 0; c < v.size(); ++c) v[c] += gradient[k][c] * x[k];
-    return v;
-  }
-};
 
 /// Prescribed (zero) velocity components at a face of the grid, bit i for component i; open faces have none.
 struct FaceSpec {
@@ -62,11 +46,6 @@ struct BodySpec {
   Affine<Point> velocity;  ///< m/s
 };
 
-/// The plate with an elliptic hole of physics/exact_ellipse.hpp; poisson_ratio is that of the first body.
-struct EllipseSpec {
-  double semi_major, semi_minor, pressure, far_stress, far_ratio;
-};
-
 /// How a traction becomes nodal forces.
 enum class Imposition {
   virtual_stress,           ///< modified virtual stress boundary, Eqs. (27), (28)
@@ -79,8 +58,9 @@ enum class Imposition {
 struct TractionSpec {
   std::string name;
   Imposition imposition = Imposition::virtual_stress;
-  Stress6 virtual_stress{};          ///< sbar at full load
-  std::optional<EllipseSpec> exact;  ///< instead: the exact stress field, evaluated where it is needed
+  StressFieldSpec field;       ///< sbar at full load
+  bool all_nodes = false;      ///< acts at all active nodes, not at the boundary nodes alone
+  bool self_balanced = false;  ///< its resultant is zero, see kernels/self_balance.hpp
   Region surface;
   Region layer;             ///< which material points may carry the load
   int points_per_cell = 0;  ///< sampling of the surface, in each direction

@@ -6,6 +6,7 @@
 #include <vsb/kernels/balance.hpp>
 #include <vsb/kernels/flag_boundary_particles.hpp>
 #include <vsb/kernels/health.hpp>
+#include <vsb/kernels/self_balance.hpp>
 #include <vsb/kernels/static_solution.hpp>
 #include <vsb/kernels/unsupported_load.hpp>
 
@@ -99,6 +100,7 @@ void run_everything(Scatter strategy) {
   const Original original{pressure, grid, state.occupancy.cells, 1u, 2};
   REQUIRE(step(Exec(), state, bodies, basis, original, options) == -1);
   balance(Exec(), state, bodies, basis, pressure, options);
+  balancing_force(Exec(), block.particles, pressure, 1u, grid.lower);
   REQUIRE(find_invalid(Exec(), block.particles).particle == -1);
   find_unsupported_load(Exec(), state.nodes, state.occupancy.bins, basis, 1e-10);
   Stiffness<LinearBasis<Dim, double>, Dim, double, Device> stiffness(block.particles, bodies, basis,
@@ -151,6 +153,7 @@ TEST_CASE("every label starts with vsb::") {
                              "for: vsb::move_surface_points",
                              "for: vsb::subtract_cell_virtual_stress",
                              "for: vsb::node_balance",
+                             "for: vsb::divergence_moments",
                              "region: vsb::solve_displacement",
                              "for: vsb::stiffness_force",
                              "reduce: vsb::strain_particles",

@@ -164,7 +164,8 @@ class BadScenes(ProgramTest):
                 ("dimension =", "dimensoin =", "body, compare, dimension, faces, gravity, grid, method, name, output, precision, "
                  "published, static, time, title, traction"),
                 ("upper = [3.0, 3.0]", "uper = [3.0, 3.0]", "lower, upper"),
-                ("pressure =", "presure =", "exact_ellipse, imposition, layer, name, points_per_cell, pressure, stress, surface, time")):
+                ("pressure =", "presure =", "affine, exact_ellipse, hydrostatic, imposition, layer, name, nodes, planar_blend, points_per_cell, pressure, "
+                 "radial_blend, self_balanced, stress, surface, time")):
             self.refuse(self.changed(old, new), f"(allowed here: {allowed})", "did you mean")
 
     def test_22_words(self):

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Stress fields of any kind, one per traction, as one virtual stress field for the kernels.
+#pragma once
+
+#include <type_traits>
+#include <vsb/physics/exact_ellipse.hpp>
+#include <vsb/physics/stress_fields.hpp>
+
+namespace vsb {
+
+/// A stress field of one of the kinds there are.
+template <int Dim, class Real>
+class StressField {
+  /// An exact stress in equilibrium, such as that of an infinite body around the modelled part; plane strain.
+  struct None {};
+  using Ellipse = std::conditional_t<Dim == 2, ExactEllipse<Real>, None>;
+
+ public:
+  KOKKOS_FUNCTION StressField() : StressField(UniformStress<Dim, Real>{SymmetricTensor<Dim, Real>::zero()}) {}
+  KOKKOS_FUNCTION StressField(const UniformStress<Dim, Real>& f) : kind_(Kind::uniform), uniform_(f) {}
+  KOKKOS_FUNCTION StressField(const AffineStress<Dim, Real>& f) : kind_(Kind::affine), affine_(f) {}
+  KOKKOS_FUNCTION StressField(const HydrostaticStress<Dim, Real>& f)
+      : kind_(Kind::hydrostatic), hydrostatic_(f) {}
+  KOKKOS_FUNCTION StressField(const RadialBlend<Dim, Real>& f) : kind_(Kind::radial), radial_(f) {}
+  KOKKOS_FUNCTION StressField(const PlanarBlend<Dim, Real>& f) : kind_(Kind::planar), planar_(f) {}
+  KOKKOS_FUNCTION StressField(const Ellipse& f) : kind_(Kind::ellipse), ellipse_(f) {}
+
+  KOKKOS_FUNCTION VirtualStressValue<Dim, Real> at(const Vector<Dim, Real>& x) const {
+    switch (kind_) {
+      case Kind::affine:
+        return affine_.at(x);
+      case Kind::hydrostatic:
+        return hydrostatic_.at(x);
+      case Kind::radial:
+        return radial_.at(x);
+      case Kind::planar:
+        return planar_.at(x);
+      case Kind::ellipse:
+        if constexpr (Dim == 2) return {ellipse_.stress(x), Vector<Dim, Real>::zero()};
+        break;
+      case Kind::uniform:
+        break;
+    }
+    return uniform_.at(x);
+  }
+
+ private:
+  enum class Kind { uniform, affine, hydrostatic, radial, planar, ellipse };
+  Kind kind_;
+  union {
+    UniformStress<Dim, Real> uniform_;
+    AffineStress<Dim, Real> affine_;
+    HydrostaticStress<Dim, Real> hydrostatic_;
+    RadialBlend<Dim, Real> radial_;
+    PlanarBlend<Dim, Real> planar_;
+    Ellipse ellipse_;
+  };
+};
+
+/// A body force that varies as the velocity of a rigid motion: c + S (x - x_c), S skew.
+template <int Dim, class Real>
+struct RigidBodyForce {
+  Vector<Dim, Real> about, constant;  ///< x_c in m, c in N/m^3
+  Matrix<Dim, Real> spin;             ///< S, N/m^4
+
+  KOKKOS_FUNCTION static RigidBodyForce zero() {
+    return {Vector<Dim, Real>::zero(), Vector<Dim, Real>::zero(), Matrix<Dim, Real>::zero()};
+  }
+  KOKKOS_FUNCTION Vector<Dim, Real> at(const Vector<Dim, Real>& x) const {
+    return constant + spin * (x - about);
+  }
+};
+
+/// Stress fields of any kind; tractions add up where their surfaces overlap.
+template <int Dim, class Real>
+struct TractionFields : ActsOnParticles {
+  static constexpr int capacity = UniformVirtualStress<Dim, Real>::capacity;
+  StressField<Dim, Real> field[capacity];
+  Real factor[capacity];  ///< on the field of traction k, at this time
+  int count = 0;
+  TractionMask balanced = 0;  ///< the tractions to which `balance` belongs, all at the same nodes
+  RigidBodyForce<Dim, Real> balance = RigidBodyForce<Dim, Real>::zero();  ///< see kernels/self_balance.hpp
+
+  KOKKOS_FUNCTION VirtualStressValue<Dim, Real> at(const Vector<Dim, Real>& x, TractionMask mask) const {
+    auto sum = VirtualStressValue<Dim, Real>::zero();
+    for (int k = 0; k < count; ++k) {
+      if (!(mask >> k & 1u)) continue;
+      const auto bar = field[k].at(x);
+      sum.stress += factor[k] * bar.stress;
+      sum.divergence += factor[k] * bar.divergence;
+    }
+    if (mask & balanced) sum.divergence += balance.at(x);
+    return sum;
+  }
+};
+
+/// See virtual_stress_of.
+template <class Functor>
+struct FunctorVirtualStress : ActsOnParticles {
+  Functor functor;
+
+  template <int Dim, class T>
+  KOKKOS_FUNCTION VirtualStressValue<Dim, T> at(const Vector<Dim, T>& x, TractionMask mask) const {
+    return mask != 0 ? functor(x) : VirtualStressValue<Dim, T>::zero();
+  }
+};
+
+/// The virtual stress of a function of one's own: functor(x) gives sbar and its divergence at x as a
+/// VirtualStressValue, and acts at the nodes where any traction is declared. On a device it must be callable
+/// there (KOKKOS_FUNCTION). The divergence must be that of the stress: what differs acts as a body force.
+template <class Functor>
+FunctorVirtualStress<Functor> virtual_stress_of(const Functor& functor) {
+  return {{}, functor};
+}
+
+}  // namespace vsb
