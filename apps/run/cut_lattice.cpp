@@ -59,7 +59,7 @@ class ShareVisitor {
     const size_t halves = size_t(1) << dimension_;
     LatticeBox part[8];
     BoxShare share[8];
-    bool all_whole = !b.cut;
+    bool all_whole = !b.cut && !touches_cut_half(box);
     for (size_t h = 0; h < halves; ++h) {
       part[h] =
           limited(half(box, h, static_cast<size_t>(dimension_)), limits_, static_cast<size_t>(dimension_));
@@ -74,6 +74,28 @@ class ShareVisitor {
   CutVolume volume() const { return volume_; }
 
  private:
+  /// Whether the surface cuts one of the halves of neighbours that touch a box. Where large and small shares
+  /// meet, the sum over particles is a poor integral; that place must lie off the boxes that the surface
+  /// cuts.
+  bool touches_cut_half(const AxisBox& box) const {
+    const auto d = static_cast<size_t>(dimension_);
+    int number = 1;
+    for (size_t i = 0; i < d; ++i) number *= 4;
+    for (int n = 0; n < number; ++n) {
+      AxisBox part = box;
+      bool inside = true;  // of the box itself
+      for (size_t i = 0, rest = static_cast<size_t>(n); i < d; ++i, rest /= 4) {
+        const double width = 0.5 * (box.upper[i] - box.lower[i]), k = static_cast<double>(rest % 4) - 1;
+        inside = inside && (rest % 4 == 1 || rest % 4 == 2);
+        part.lower[i] = box.lower[i] + k * width;
+        part.upper[i] = box.lower[i] + (k + 1) * width;
+      }
+      const LatticeBox limited_part = limited(part, limits_, d);
+      if (!inside && !limited_part.empty && body_.region.overlap(limited_part.within) == Overlap::some)
+        return true;
+    }
+    return false;
+  }
   void add(const LatticeBox& box, const BoxShare& share) {
     if (share.volume > least_share * volume_of(box.whole, dimension_))
       take({share.centroid, share.volume, box.within});

@@ -133,15 +133,16 @@ TEST_CASE("boxes wholly in the body are the particles that they are without cutt
     const std::set<Point> places(cut.position.begin(), cut.position.end());
     size_t whole = 0;
     for (const Point& x : kept.position) {
-      bool all_corners = true;  // a disc is convex
-      for (const double dx : {-0.0625, 0.0625})
-        for (const double dy : {-0.0625, 0.0625})
-          all_corners = all_corners && disc({x[0] + dx, x[1] + dy, 0});
+      // A disc is convex. With cut2x2 the neighbours' halves that touch the box must be whole too.
+      const double reach = boundary == BoundaryBoxes::cut ? 0.0625 : 0.125;
+      bool all_corners = true;
+      for (const double dx : {-reach, reach})
+        for (const double dy : {-reach, reach}) all_corners = all_corners && disc({x[0] + dx, x[1] + dy, 0});
       if (!all_corners) continue;
       ++whole;
       CHECK(places.count(x) == 1);
     }
-    CHECK(whole > 600);
+    CHECK(whole > (boundary == BoundaryBoxes::cut ? 700u : 600u));
     CHECK(static_cast<size_t>(std::count(cut.volume.begin(), cut.volume.end(), kept.volume[0])) >= whole);
     const auto again = place_one(2, disc, 0.5, 4, boundary);
     CHECK(again.position == cut.position);
@@ -189,8 +190,10 @@ TEST_CASE("slivers: more than 2 % of the box, or of the half, is a particle; les
   CHECK(above.position.size() == 5);
   CHECK(above.cut.dropped == 0);
   CHECK_THAT(above.position[4][0], WithinRel(1.00255, 1e-10));
-  CHECK(place(1.0049, BoundaryBoxes::cut2x2).position.size() == 5);  // 3.9 % of 0.125
-  CHECK(place(1.0024, BoundaryBoxes::cut2x2).position.size() == 4);  // 1.92 %
+  // The box [0.75, 1] touches the half [1, 1.125], which is cut, and is split too.
+  CHECK(place(1.0049, BoundaryBoxes::cut2x2).position.size() == 6);  // 3.9 % of 0.125
+  CHECK(place(1.0024, BoundaryBoxes::cut2x2).position.size() == 5);  // 1.92 %
+  CHECK(place(1.0000, BoundaryBoxes::cut2x2).position.size() == 4);  // nothing is cut
 }
 
 TEST_CASE("a plane of symmetry cuts the boxes that it crosses") {
