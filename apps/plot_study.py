@@ -30,6 +30,9 @@ from plot_style import MARKERS, SERIES
 
 QUANTITIES = {"e_u": "displacement", "e_u_exact": "displacement, exact solution", "e_sigma": "stress", "e_rr": "radial stress",
               "e_tt": "hoop stress", "e_xx": "stress xx", "e_yy": "stress yy", "e_xy": "stress xy"}
+QUANTITIES.update({f"{e}_recovered": f"{name}, recovered" for e, name in QUANTITIES.items() if not e.startswith("e_u")})
+QUANTITIES.update({f"{e}_cell_mean": f"{name}, cell means" for e, name in list(QUANTITIES.items())
+                   if not e.startswith("e_u") and not e.endswith("recovered")})
 
 
 def number(text):

@@ -51,11 +51,14 @@ std::string refusal(const Scene& scene) {
 
 void read_basis(TableReader& r, Scene& scene) {
   static const std::vector<std::string> names = {"linear", "ugimp", "quadratic_bspline"};
-  const std::string name = r.choice("basis", names, names[0]);
+  const std::string name = r.choice("basis", names, names[scene.setting == Setting::accurate ? 2 : 0]);
   scene.method.basis = static_cast<BasisKind>(std::find(names.begin(), names.end(), name) - names.begin());
   if (scene.method.basis != BasisKind::linear)
-    if (const auto reason = refusal(scene); !reason.empty())
-      r.fail(*r.source().get("basis"), "basis", fmt::format("\"{}\" {}", name, reason));
+    if (const auto reason = refusal(scene); !reason.empty()) {
+      if (const auto* node = r.source().get("basis"))
+        r.fail(*node, "basis", fmt::format("\"{}\" {}", name, reason));
+      r.missing("basis", fmt::format("\"linear\": \"{}\", which setting = \"accurate\" takes, {}", name, reason));
+    }
   if (scene.method.basis != BasisKind::ugimp) {
     if (const auto* node = r.source().get("gimp_half_width"))
       r.fail(*node, "gimp_half_width", "is for basis = \"ugimp\"");

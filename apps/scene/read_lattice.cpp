@@ -13,9 +13,10 @@ namespace vsb::app {
 
 namespace {
 
-CellLattice read_cells(TableReader& body_table, size_t d) {
+CellLattice read_cells(TableReader& body_table, size_t d, Setting setting) {
   CellLattice lattice;
-  const auto n = body_table.integer_or_integers("particles_per_cell", d, 1, 64, {}, "in each direction");
+  const auto preset = setting == Setting::accurate ? std::optional<int>(2) : std::nullopt;
+  const auto n = body_table.integer_or_integers("particles_per_cell", d, 1, 64, preset, "in each direction");
   std::copy(n.begin(), n.end(), lattice.particles_per_cell.begin());
   return lattice;
 }
@@ -78,9 +79,10 @@ ConcentricLattice read_concentric(TableReader r, size_t d) {
   return lattice;
 }
 
-BoundaryBoxes read_boundary(TableReader& body_table, const GridSpec& grid) {
+BoundaryBoxes read_boundary(TableReader& body_table, const GridSpec& grid, Setting setting) {
   static const std::vector<std::string> names = {"keep", "cut", "cut2x2"};
-  const std::string name = body_table.choice("boundary", names, names[0]);
+  const bool cuts = setting == Setting::accurate && !grid.mapped() && !body_table.has("jitter");
+  const std::string name = body_table.choice("boundary", names, names[cuts ? 2 : 0]);
   const auto boundary =
       static_cast<BoundaryBoxes>(std::find(names.begin(), names.end(), name) - names.begin());
   if (boundary != BoundaryBoxes::keep && grid.mapped())
@@ -92,14 +94,16 @@ BoundaryBoxes read_boundary(TableReader& body_table, const GridSpec& grid) {
 
 }  // namespace
 
-void read_lattice(TableReader& body_table, const GridSpec& grid, int dimension, BodySpec& body) {
+void read_lattice(TableReader& body_table, const Scene& scene, BodySpec& body) {
+  const int dimension = scene.dimension;
+  const auto& grid = scene.grid;
   const auto d = static_cast<size_t>(dimension);
   const toml::node* written = body_table.source().get("lattice");
   if (!written) {
-    if (!body_table.has("particles_per_cell"))
+    if (!body_table.has("particles_per_cell") && scene.setting == Setting::paper)
       body_table.missing("particles_per_cell",
                          "an integer >= 1, or a table lattice.uniform or lattice.concentric");
-    body.lattice = read_cells(body_table, d);
+    body.lattice = read_cells(body_table, d, scene.setting);
   } else {
     if (body_table.has("particles_per_cell"))
       body_table.fail(*written, "lattice", "give either particles_per_cell or a lattice, not both");
@@ -119,7 +123,7 @@ void read_lattice(TableReader& body_table, const GridSpec& grid, int dimension, 
     lattice.finish();
   }
   if (std::holds_alternative<ConcentricLattice>(body.lattice)) return;
-  body.boundary = read_boundary(body_table, grid);
+  body.boundary = read_boundary(body_table, grid, scene.setting);
   body.jitter.amount =
       body_table.number("jitter", {0, 0.5, false, true}, 0.0,
                         "random shift of every particle, in spacings: at most this either way");

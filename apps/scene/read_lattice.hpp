@@ -9,7 +9,8 @@
 
 namespace vsb::app {
 
-/// Reads the keys particles_per_cell or lattice, jitter and seed of a body's table.
-void read_lattice(TableReader& body_table, const GridSpec& grid, int dimension, BodySpec& body);
+/// Reads the keys particles_per_cell or lattice, boundary, jitter and seed of a body's table. Grid, dimension
+/// and setting of the scene must be known.
+void read_lattice(TableReader& body_table, const Scene& scene, BodySpec& body);
 
 }  // namespace vsb::app

@@ -132,8 +132,15 @@ struct Published {
 /// Tractions a scene may declare; the capacity of the field the kernels get.
 constexpr size_t max_tractions = 8;
 
+/// What a scene takes where it does not say.
+enum class Setting {
+  paper,    ///< the linear basis, particles whole
+  accurate  ///< quadratic B-splines, boundary boxes split and cut, 2 particles per cell and direction
+};
+
 struct Scene {
   std::string name, title;
+  Setting setting = Setting::paper;
   int dimension = 0;
   bool single_precision = false;
   GridSpec grid;
