@@ -50,6 +50,11 @@ void store(const SymmetricTensor<2, double>& stress, std::vector<double>& to, si
   for (size_t c = 0; c < 4; ++c) to[6 * p + c] = stress[static_cast<int>(c)];
 }
 
+/// A particle's place relative to the axis of a cylinder that has been carried to where it is now.
+Vector<2, double> from_axis(const CylinderComparison& c, const std::vector<double>& position, size_t p) {
+  return in_plane(position, p) - Vector<2, double>{{c.center[0] + c.moved[0], c.center[1] + c.moved[1]}};
+}
+
 ExactColumn<double> solution_of(const ColumnComparison& c, const Scene& scene) {
   const auto& m = scene.bodies.front().material;
   const auto elastic = LinearElastic<double>::from_young(m.youngs_modulus, m.poisson_ratio);
@@ -76,7 +81,7 @@ Errors stress_errors(const CylinderComparison& c, const Scene& scene, const Samp
   const auto solution = solution_of(c, scene);
   Norm rr, tt;
   for (size_t p = 0; p < s.weight.size(); ++p) {
-    const auto x = in_plane(s.position, p);
+    const auto x = from_axis(c, s.position, p);
     const auto exact = solution.stress(std::sqrt(dot(x, x)));
     const auto ours = to_polar(in_plane_stress(s.cauchy_stress, p), x[0], x[1]);
     rr.add((exact.rr - ours.rr) / c.pressure, s.weight[p]);
@@ -124,7 +129,8 @@ Errors displacement_errors(const CylinderComparison& c, const Scene& scene, cons
   const auto solution = solution_of(c, scene);
   Norm u;
   for (size_t p = 0; p < s.count(); ++p) {
-    const auto x = in_plane(s.position, p), x0 = in_plane(s.initial_position, p);
+    const auto x = from_axis(c, s.position, p),
+               x0 = in_plane(s.initial_position, p) - Vector<2, double>{{c.center[0], c.center[1]}};
     const double r = std::sqrt(dot(x, x));
     u.add((solution.radial_displacement(r) - dot(x - x0, x) / r) / c.inner_radius, s.volume[p]);
   }
@@ -149,10 +155,11 @@ ExactFields exact_fields(const CylinderComparison& c, const Scene& scene, const 
   const auto solution = solution_of(c, scene);
   ExactFields exact{std::vector<double>(3 * s.count()), std::vector<double>(6 * s.count())};
   for (size_t p = 0; p < s.count(); ++p) {
-    const auto x = in_plane(s.position, p);
+    const auto x = from_axis(c, s.position, p);
     const double r = std::sqrt(dot(x, x));
     for (size_t i = 0; i < 2; ++i)
-      exact.displacement[3 * p + i] = solution.radial_displacement(r) * x[static_cast<int>(i)] / r;
+      exact.displacement[3 * p + i] =
+          c.moved[i] + solution.radial_displacement(r) * x[static_cast<int>(i)] / r;
     const auto polar = solution.stress(r);
     auto cartesian = from_polar<2>(polar, x[0], x[1]);
     cartesian[2] = scene.bodies.front().material.poisson_ratio * (polar.rr + polar.tt);
@@ -173,7 +180,7 @@ Errors other_figures(const CylinderComparison& c, const Scene& scene, const Snap
   const auto solution = solution_of(c, scene);
   double hoop = 0, exact = 0;
   for (size_t p = 0; p < s.count(); ++p) {
-    const auto x = in_plane(s.position, p);
+    const auto x = from_axis(c, s.position, p);
     hoop += s.volume[p] * to_polar(in_plane_stress(s.cauchy_stress, p), x[0], x[1]).tt;
     exact += s.volume[p] * solution.stress(std::sqrt(dot(x, x))).tt;
   }

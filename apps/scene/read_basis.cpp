@@ -57,7 +57,8 @@ void read_basis(TableReader& r, Scene& scene) {
     if (const auto reason = refusal(scene); !reason.empty()) {
       if (const auto* node = r.source().get("basis"))
         r.fail(*node, "basis", fmt::format("\"{}\" {}", name, reason));
-      r.missing("basis", fmt::format("\"linear\": \"{}\", which setting = \"accurate\" takes, {}", name, reason));
+      r.missing("basis",
+                fmt::format("\"linear\": \"{}\", which setting = \"accurate\" takes, {}", name, reason));
     }
   if (scene.method.basis != BasisKind::ugimp) {
     if (const auto* node = r.source().get("gimp_half_width"))

@@ -242,8 +242,8 @@ TimeSpec read_time(TableReader r, const Scene& scene) {
     const bool splines = scene.method.basis == BasisKind::quadratic_bspline;
     c.force_ratio = s.number("force_ratio", {0, 1, true, true}, splines ? 2e-5 : 1e-6,
                              "unbalanced force / internal force");
-    c.energy_ratio = s.number("energy_ratio", {0, 1, true, true}, splines ? 1e-6 : 1e-9,
-                              "kinetic energy / strain energy");
+    c.energy_ratio =
+        s.number("energy_ratio", {0, 1, true, true}, splines ? 1e-6 : 1e-9, "kinetic energy / strain energy");
     c.check_every = s.integer("check_every", 1, most, 100, "steps");
     t.steps = s.integer("max_steps", 1, most, 1'000'000LL,
                         "the last step in any case; or, in place of until_static, steps");
@@ -303,8 +303,8 @@ ColumnComparison read_column(TableReader& r, const ElasticSpec& material) {
 Comparison read_comparison(TableReader& document, const ElasticSpec& material, MoreNorms& more) {
   if (!document.has("compare")) return {};
   TableReader r = document.table("compare");
-  std::vector<std::string> keys = {"solution",     "length",    "traction",  "inner_radius",
-                                   "outer_radius", "recovered", "cell_means"};
+  std::vector<std::string> keys = {"solution", "length", "traction",  "inner_radius", "outer_radius",
+                                   "center",   "moved",  "recovered", "cell_means"};
   keys.insert(keys.end(), ellipse_keys.begin(), ellipse_keys.end());
   r.allow_only(keys);
   const std::string solution = r.choice("solution", {"column", "cylinder", "ellipse"});
@@ -316,6 +316,12 @@ Comparison read_comparison(TableReader& document, const ElasticSpec& material, M
     c.inner_radius = r.number("inner_radius", Range::positive(), {}, "m");
     c.outer_radius = r.number("outer_radius", {c.inner_radius, Range::any().max, true, false}, {}, "m");
     c.pressure = r.number("pressure", Range::positive(), {}, "Pa, positive in compression");
+    for (const auto& [key, point] : {std::pair{"center", &c.center}, std::pair{"moved", &c.moved}}) {
+      const char* unit =
+          key == std::string("center") ? "m, before it moves" : "m, carried as a whole at the end";
+      const auto place = r.numbers(key, 2, Range::any(), std::vector<double>{0, 0}, unit);
+      std::copy(place.begin(), place.end(), point->begin());
+    }
     comparison = c;
   } else {
     comparison = read_ellipse(r);
@@ -380,8 +386,8 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
   const toml::table document = parse_scene_file(path, overrides);
   ResolvedTable resolved;
   TableReader r(document, "", resolved);
-  r.allow_only({"name", "title", "setting", "dimension", "precision", "gravity", "grid", "faces", "body", "traction",
-                "method", "time", "static", "output", "compare", "published"});
+  r.allow_only({"name", "title", "setting", "dimension", "precision", "gravity", "grid", "faces", "body",
+                "traction", "method", "time", "static", "output", "compare", "published"});
   Scene scene;
   scene.name = r.text("name", std::filesystem::path(path).stem().string());
   if (scene.name.empty() || scene.name.find_first_of("/\\ \t\n") != std::string::npos ||
@@ -402,8 +408,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
   if (scene.grid.mapped() && scene.single_precision)
     r.fail(*document.get("precision"), "precision", "rectilinear and polar grids are for double precision");
   scene.faces = read_faces(r.table("faces"), scene.dimension, scene.grid);
-  for (auto& table : r.tables("body"))
-    scene.bodies.push_back(read_body(table, scene, scene.bodies.size()));
+  for (auto& table : r.tables("body")) scene.bodies.push_back(read_body(table, scene, scene.bodies.size()));
   if (scene.bodies.empty()) r.missing("body", "at least one table [[body]]");
   std::vector<TimeShape> time_shapes;
   for (auto& table : r.tables("traction")) {

@@ -113,6 +113,8 @@ struct ColumnComparison {
 };
 struct CylinderComparison {
   double inner_radius, outer_radius, pressure;
+  Point center{};  ///< m, of the undeformed cylinder
+  Point moved{};   ///< m, by which it has been carried when it is compared
 };
 using EllipseComparison = EllipseSpec;
 using Comparison = std::variant<std::monostate, ColumnComparison, CylinderComparison, EllipseComparison>;
