@@ -2,10 +2,12 @@
 """Virtual stress fields that vary in space, tractions at all nodes, and what is warned of about both."""
 import math
 import re
+import subprocess
+import sys
 import unittest
 
 import numpy as np
-from vsb_program import SCENES, ProgramTest, last_fields, vsb
+from vsb_program import ROOT, SCENES, ProgramTest, last_fields, vsb
 
 DISC = """
 dimension = 2
@@ -224,6 +226,27 @@ class Reading(FieldTest):
         self.assertAlmostEqual(pull["x"][1] / pull["z"][1], 1, delta=1e-5)
         self.assertAlmostEqual(pull["x"][0] / pull["z"][2], 1, delta=1e-5)
         self.assertGreater(abs(pull["x"][0] / pull["x"][1] - 1), 1e-2)
+
+
+class Pictures(FieldTest):
+    def plot(self, *runs):
+        picture = self.folder / "rings.png"
+        done = subprocess.run([sys.executable, ROOT / "apps" / "plot_rings.py", picture, *runs], capture_output=True, text=True)
+        return done, picture
+
+    def test_rings_side_by_side(self):
+        self.run_scene("ring")
+        self.run_scene("ring-nodes")
+        done, picture = self.plot(f"blend={self.folder / 'ring'}", f"p = const={self.folder / 'ring-nodes'}")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(picture.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+
+    def test_what_has_no_exact_ring_is_refused(self):
+        self.run_scene(self.disc("pressure = 1e5"), out="disc")
+        done, picture = self.plot(f"disc={self.folder / 'disc'}")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("exact_cauchy_stress", done.stderr)
+        self.assertFalse(picture.exists())
 
 
 class Warnings(FieldTest):
