@@ -61,6 +61,7 @@ class SimulationOf final : public Simulation {
   int boundary_nodes() const override { return state_.occupancy.boundary_node_count; }
 
   CutVolume cut_volume() const override { return placed_.cut; }
+  MomentFit moment_fit() const override { return placed_.moment_fit; }
   VoidFilterReport void_filter() const override {
     const auto& o = state_.occupancy;
     if (!scene_.method.void_filter) return {};

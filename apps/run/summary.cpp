@@ -132,6 +132,17 @@ void print_cut_volume(const CutVolume& volume, const std::string& prefix) {
       prefix, bodies, volume.particles, volume.dropped / bodies);
 }
 
+void print_moment_fit(const MomentFit& fit, const std::string& prefix) {
+  if (fit.volume_before == 0) return;
+  std::string cells;
+  for (size_t n = fit.cells.size() - 1; n > 0; --n)
+    if (fit.cells[n] > 0)
+      cells += fmt::format("{}{} cells of degree {}", cells.empty() ? "" : ", ", fit.cells[n], n - 1);
+  if (fit.cells[0] > 0) cells += fmt::format(", {} left alone", fit.cells[0]);
+  fmt::print("{}moments fitted in {}; volume of the particles {:.9g}, without the fit {:.9g}\n", prefix,
+             cells, fit.volume_after, fit.volume_before);
+}
+
 void print_report(const Scene& scene, const RunFigures& f) {
   if (!f.errors.empty()) {
     size_t width = 12;
@@ -156,6 +167,7 @@ void print_report(const Scene& scene, const RunFigures& f) {
              f.steps_timed + f.iterations, sweep, f.seconds, f.ns_per_particle_step(), sweep,
              static_cast<double>(peak_bytes()) / 1e6);
   print_cut_volume(f.cut, "");
+  print_moment_fit(f.moment_fit, "");
   const auto& b = f.balance;
   fmt::print("force ratio {:.2e}, energy ratio {:.2e}\n", b.force_ratio, b.energy_ratio);
   print_resultant(scene, b, "");
