@@ -9,7 +9,9 @@
 ///     sum_p (V_p - V0_p)^2 / V0_p -> min,   V_p = V0_p (1 + sum_k lambda_k m_k(x_p)).
 /// The gradients of the linear basis are among these products, so that in a cell that lies in the body as a
 /// whole sum_p V_p grad N_I is exact, as it is on a lattice of equal boxes. What the modified method lacks in
-/// the resultant of a closed surface comes from such cells, next to those of the boundary nodes, and is gone.
+/// the resultant of a closed surface comes from such cells, next to those of the boundary nodes, and is gone:
+/// of the free cylinder of rings (apps/scenes/cylinder-free.toml) 5.0e-2 p a, with the fit 4e-16 p a, and
+/// 1.4e-6 p a after one step of kappa = 0.2. Particles that move into other cells leave the fit behind.
 ///
 /// Where particles are too few, or one would keep less than a tenth of what the volume alone gives it,
 /// products of most coordinates are left out, then of fewer, until the volume is left. Masses follow the

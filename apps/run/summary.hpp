@@ -44,7 +44,7 @@ std::string summary_json(const Scene& scene, const RunFigures& figures);
 void print_cut_volume(const CutVolume& volume, const std::string& prefix);
 
 /// What the fit of moments did, in the same way.
-void print_moment_fit(const MomentFit& fit, const std::string& prefix);
+void print_moment_fit(const Scene& scene, const MomentFit& fit, const std::string& prefix);
 
 /// Resultant and torque of the tractions beside the exact ones, in lines that begin with `prefix`.
 void print_resultant(const Scene& scene, const BalanceReport& balance, const std::string& prefix);
