@@ -282,6 +282,26 @@ class MomentFit(LatticeTest):
         self.assertLess(np.hypot(*fitted["net_force"][:2]) / pressure_times_radius, 1e-12)
         self.assertLess(abs(fitted["net_torque"][2]) / pressure_times_radius, 1e-12)
 
+    def test_nor_is_a_jittered_ball(self):
+        text = """
+dimension = 3
+grid = { lower = [-2.6, -2.7, -2.8], upper = [2.4, 2.3, 2.2], spacing = 0.5 }
+[[body]]
+shape = { ball = { center = [0.0, 0.0, 0.0], radius = 1.4 } }
+particles_per_cell = 4
+jitter = 0.3
+density = 1000.0
+material = { youngs_modulus = 1e9, poisson_ratio = 0.3 }
+[[traction]]
+pressure = 1e5
+[time]
+kappa = 1e-6
+steps = 1
+"""
+        pushed = lambda run: max(map(abs, run["net_force"] + run["net_torque"])) / 1e5
+        self.assertGreater(pushed(self.run_scene(self.write(text))), 1e-3)
+        self.assertLess(pushed(self.run_scene(self.write(text), *self.FIT)), 1e-12)
+
     def test_masses_follow_the_volumes_and_what_was_done_is_told(self):
         done = vsb("check", SCENES / "cylinder-free.toml", *self.FIT)
         # The sum is the number of cells that hold particles, of which those beside the surface have fewer moments.
