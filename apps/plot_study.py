@@ -163,6 +163,10 @@ def draw_errors(study):
                 panel.xaxis.set_minor_locator(NullLocator())
                 panel.set_xticks(sorted(places.values()), sorted(places, key=places.get))
             panel.margins(x=0.08)
+            # All panels have the axis of the study, also where an error exists, or a scene runs, in a part of it alone.
+            span = max(places.values()) - min(places.values())
+            if not axis["log"] and span > 0:
+                panel.set_xlim(min(places.values()) - 0.06 * span, max(places.values()) + 0.06 * span)
         readable(panel.yaxis)
     slopes = [Line2D([], [], color="0.6", linewidth=0.9, label="slopes 1 and 2")] if axis["log"] else []
     legend_below(figure, study, other_marks(study) + slopes)

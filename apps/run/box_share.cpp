@@ -9,6 +9,8 @@ namespace {
 
 constexpr double round_off = 1e-9;  // of the box: faces that coincide but for this are the same
 
+constexpr BoxMoments moments_of_whole{1, 1. / 2, 1. / 2, 1. / 4, 1. / 2, 1. / 4, 1. / 4, 1. / 8};
+
 /// A box with its sampling lines. Places are given in shares of the box's edges.
 class SampledBox {
  public:
@@ -18,12 +20,7 @@ class SampledBox {
         d_(static_cast<size_t>(dimension)),
         n_(static_cast<size_t>(samples_per_direction(dimension))) {}
 
-  struct Moments {
-    double volume = 0;  ///< share of the box
-    Point first{};      ///< integral of the place over the share, divided by the box's volume
-  };
-
-  Moments integrate() const {
+  BoxMoments integrate() const {
     size_t best = 0, most = 0;
     bool any = false, all = true;
     for (size_t axis = 0; axis < d_; ++axis) {
@@ -34,11 +31,10 @@ class SampledBox {
       }
     }
     if (!any) return {};
-    if (all) return {1, {0.5, 0.5, 0.5}};
-    Moments sum;
+    if (all) return moments_of_whole;
+    BoxMoments sum{};
     for (size_t line = 0; line < lines(); ++line) add(line_of(best, line), best, sum);
-    for (double* value : {&sum.volume, &sum.first[0], &sum.first[1], &sum.first[2]})
-      *value /= static_cast<double>(lines());
+    for (double& value : sum) value /= static_cast<double>(lines());
     return sum;
   }
 
@@ -79,11 +75,10 @@ class SampledBox {
     return crossings;
   }
 
-  void add(const Point& place, size_t axis, Moments& sum) const {
+  void add(Point place, size_t axis, BoxMoments& sum) const {
     const auto add_interval = [&](double from, double to) {
-      const double length = to - from;
-      sum.volume += length;
-      for (size_t i = 0; i < d_; ++i) sum.first[i] += length * (i == axis ? 0.5 * (from + to) : place[i]);
+      place[axis] = 0.5 * (from + to);
+      for (size_t k = 0; k < size_t(1) << d_; ++k) sum[k] += (to - from) * value_of_product(k, place);
     };
     double begin = 0;
     bool before = inside(place, axis, 0);
@@ -116,22 +111,30 @@ double volume_of(const AxisBox& box, int dimension) {
   return volume;
 }
 
+BoxMoments moments_of(const Region& region, const AxisBox& box, int dimension) {
+  switch (region.overlap(box)) {
+    case Overlap::none:
+      return {};
+    case Overlap::all:
+      return moments_of_whole;
+    default:
+      return SampledBox(region, box, dimension).integrate();
+  }
+}
+
 BoxShare share_of(const Region& region, const AxisBox& box, int dimension) {
   const auto d = static_cast<size_t>(dimension);
   BoxShare share;
   for (size_t i = 0; i < d; ++i) share.centroid[i] = 0.5 * (box.lower[i] + box.upper[i]);
-  const Overlap overlap = region.overlap(box);
-  if (overlap == Overlap::none) return share;
   const double volume = volume_of(box, dimension);
-  const auto moments =
-      overlap == Overlap::all ? SampledBox::Moments{1, {}} : SampledBox(region, box, dimension).integrate();
-  if (moments.volume >= 1 - round_off) {
+  const auto moments = moments_of(region, box, dimension);
+  if (moments[0] >= 1 - round_off) {
     share.volume = volume;
     share.whole = true;
-  } else if (moments.volume > round_off) {
-    share.volume = moments.volume * volume;
+  } else if (moments[0] > round_off) {
+    share.volume = moments[0] * volume;
     for (size_t i = 0; i < d; ++i)
-      share.centroid[i] = box.lower[i] + moments.first[i] / moments.volume * (box.upper[i] - box.lower[i]);
+      share.centroid[i] = box.lower[i] + moments[size_t(1) << i] / moments[0] * (box.upper[i] - box.lower[i]);
   }
   return share;
 }

@@ -11,6 +11,8 @@
 /// distance of the lines. What is thinner than that distance may be missed.
 #pragma once
 
+#include <array>
+
 #include "scene/region.hpp"
 
 namespace vsb::app {
@@ -25,7 +27,20 @@ struct BoxShare {
   bool whole = false;  ///< the share is the box: volume and centroid are exactly the box's own
 };
 
+/// Integrals over the share of the products of different coordinates, each in shares of the box's edges from
+/// its lower corner, divided by the box's volume. Product k has coordinate i where bit i of k is set.
+using BoxMoments = std::array<double, 8>;
+
+/// Product k of the coordinates of a place.
+inline double value_of_product(size_t k, const Point& place) {
+  double value = 1;
+  for (size_t i = 0; i < 3; ++i)
+    if (k >> i & 1) value *= place[i];
+  return value;
+}
+
 double volume_of(const AxisBox& box, int dimension);
 BoxShare share_of(const Region& region, const AxisBox& box, int dimension);
+BoxMoments moments_of(const Region& region, const AxisBox& box, int dimension);
 
 }  // namespace vsb::app

@@ -9,6 +9,7 @@
 #include "run/cut_bodies.hpp"
 #include "run/cut_lattice.hpp"
 #include "run/lattice_points.hpp"
+#include "run/moment_fit.hpp"
 #include "run/simulation.hpp"
 
 namespace vsb::app {
@@ -82,6 +83,7 @@ PlacedParticles place_particles(const Scene& scene) {
       throw SetupError("more than 2^31 particles");
     placed.bodies.push_back({static_cast<int>(first), static_cast<int>(placed.position.size())});
   }
+  if (scene.method.moment_fit) placed.moment_fit = fit_moments(scene, placed);
   return placed;
 }
 

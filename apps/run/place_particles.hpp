@@ -3,6 +3,7 @@
 /// The particles of a scene at the start, on the host.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "scene/scene.hpp"
@@ -21,16 +22,24 @@ struct CutVolume {
   double dropped = 0;  ///< in slivers too small for a particle
 };
 
+/// What the fit of moments (run/moment_fit.hpp) did.
+struct MomentFit {
+  std::array<int, 5> cells{};  ///< [0] left alone; [1 + n]: with the moments of products of n coordinates
+  double volume_before = 0, volume_after = 0;  ///< of the fitted bodies' particles, m^3
+};
+
 struct PlacedParticles {
   std::vector<Point> position;
   std::vector<double> volume;
   std::vector<PlacedBody> bodies;
   CutVolume cut;
+  MomentFit moment_fit;
 };
 
 /// Puts a particle at every point of a body's lattice that lies in its shape and in the grid, then moves it
-/// by the body's jitter; for a cut lattice see run/cut_lattice.hpp. Throws SetupError for an empty body, for
-/// bodies that overlap, and for a jitter that moves a particle out of the grid.
+/// by the body's jitter; for a cut lattice see run/cut_lattice.hpp. Then fits moments, where asked. Throws
+/// SetupError for an empty body, for bodies that overlap, and for a jitter that moves a particle out of the
+/// grid.
 PlacedParticles place_particles(const Scene& scene);
 
 }  // namespace vsb::app

@@ -57,6 +57,7 @@ void take_state(RunFigures& figures, const Scene& scene, Simulation& simulation)
   figures.errors = comparison.errors;
   figures.compared = comparison.figures;
   figures.cut = simulation.cut_volume();
+  figures.moment_fit = simulation.moment_fit();
   figures.particles = simulation.particle_count();
   figures.boundary_nodes = simulation.boundary_nodes();
   figures.void_filter = simulation.void_filter();

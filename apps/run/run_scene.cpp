@@ -179,6 +179,7 @@ void check_scene(const Scene& scene) {
   fmt::print("# {} particles, {} boundary nodes, {:.3g} MB of state\n", simulation->particle_count(),
              simulation->boundary_nodes(), static_cast<double>(simulation->state_bytes()) / 1e6);
   print_cut_volume(simulation->cut_volume(), "# ");
+  print_moment_fit(scene, simulation->moment_fit(), "# ");
   const double settled = loads_settled_at(scene);
   fmt::print("# dt = {:.6g} s (kappa {:.4g}), {} {} steps, loads {}\n", scene.time.dt, scene.time.kappa,
              scene.time.until_static ? "at most" : "exactly", scene.time.steps,

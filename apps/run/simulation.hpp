@@ -91,6 +91,7 @@ class Simulation {
   virtual int boundary_nodes() const = 0;
   /// Of the bodies with cut lattices, at the start.
   virtual CutVolume cut_volume() const = 0;
+  virtual MomentFit moment_fit() const = 0;
   /// Of the boundary nodes of the moment; zeros without the filter.
   virtual VoidFilterReport void_filter() const = 0;
   /// What looks wrong about the virtual stress fields, a sentence each; see run/field_advice.hpp.

@@ -61,6 +61,7 @@ class SimulationOf final : public Simulation {
   int boundary_nodes() const override { return state_.occupancy.boundary_node_count; }
 
   CutVolume cut_volume() const override { return placed_.cut; }
+  MomentFit moment_fit() const override { return placed_.moment_fit; }
   VoidFilterReport void_filter() const override {
     const auto& o = state_.occupancy;
     if (!scene_.method.void_filter) return {};
@@ -68,7 +69,7 @@ class SimulationOf final : public Simulation {
         void_filter_effect(exec_, state_.particles, o.cells, basis_, o.tractions, o.boundary_node_count);
     return {effect.false_voids, effect.dropped_nodes};
   }
-  std::vector<std::string> advice() const override { return field_advice(scene_, placed_, occupied_cells()); }
+  std::vector<std::string> advice() const override { return field_advice(scene_, placed_, cells_inside()); }
 
   size_t state_bytes() const override {
     const auto& o = state_.occupancy;
@@ -409,6 +410,28 @@ class SimulationOf final : public Simulation {
       for (int i = Dim - 1; i >= 0; --i)
         index = index * cells.cells[static_cast<size_t>(i)] + (cell[i] - Basis::reach);
       cells.occupied[static_cast<size_t>(index)] = true;
+    }
+    return cells;
+  }
+
+  /// The cells that hold particles, and the voids that the filter tells from the outside.
+  OccupiedCells cells_inside() const {
+    auto cells = occupied_cells();
+    if (!scene_.method.void_filter) return cells;
+    const auto outside = Kokkos::create_mirror_view_and_copy(
+        Kokkos::HostSpace(), state_.occupancy.cells.outside, "vsb::outside on host");
+    const auto& grid = basis_.grid;
+    for (int n = 0; n < grid.cell_count(); ++n) {
+      const auto ijk = grid.cell_ijk(n);
+      int index = 0;
+      bool in_scene = true;
+      for (int i = Dim - 1; i >= 0; --i) {
+        const int along = ijk[i] - Basis::reach, count = cells.cells[static_cast<size_t>(i)];
+        in_scene = in_scene && along >= 0 && along < count;
+        index = index * count + along;
+      }
+      const auto word = outside(static_cast<size_t>(n / grid.cells[0]), static_cast<size_t>(ijk[0] / 64));
+      if (in_scene && (word >> (ijk[0] % 64) & 1u) == 0) cells.occupied[static_cast<size_t>(index)] = true;
     }
     return cells;
   }

@@ -5,7 +5,9 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 
 #include "files/build_info.hpp"
@@ -66,6 +68,16 @@ std::vector<std::string> figure_names(const Scene& scene) {
   return names;
 }
 
+namespace {
+
+/// Numbers of cells with all moments, with fewer, and of those left alone.
+std::array<int, 3> moment_cells(const Scene& scene, const MomentFit& fit) {
+  const auto all = static_cast<size_t>(scene.dimension) + 1;
+  return {fit.cells[all], std::accumulate(&fit.cells[1], &fit.cells[all], 0), fit.cells[0]};
+}
+
+}  // namespace
+
 std::string summary_json(const Scene& scene, const RunFigures& f) {
   toml::table errors, compared, provenance;
   for (const auto& [name, value] : f.errors) errors.insert(name, value);
@@ -101,6 +113,14 @@ std::string summary_json(const Scene& scene, const RunFigures& f) {
   if (f.cut.particles > 0)
     summary.insert("cut_bodies", toml::table{{"volume", f.cut.particles + f.cut.dropped},
                                              {"particle_volume", f.cut.particles}});
+  if (scene.method.moment_fit) {
+    const auto [all, fewer, none] = moment_cells(scene, f.moment_fit);
+    summary.insert("moment_fit", toml::table{{"cells_of_all_moments", all},
+                                             {"cells_of_fewer", fewer},
+                                             {"cells_not_fitted", none},
+                                             {"volume", f.moment_fit.volume_after},
+                                             {"volume_without", f.moment_fit.volume_before}});
+  }
   if (scene.method.void_filter)
     summary.insert("void_filter", toml::table{{"false_voids", f.void_filter.false_voids},
                                               {"dropped_nodes", f.void_filter.dropped_nodes}});
@@ -132,6 +152,16 @@ void print_cut_volume(const CutVolume& volume, const std::string& prefix) {
       prefix, bodies, volume.particles, volume.dropped / bodies);
 }
 
+void print_moment_fit(const Scene& scene, const MomentFit& fit, const std::string& prefix) {
+  if (!scene.method.moment_fit) return;
+  const auto [all, fewer, none] = moment_cells(scene, fit);
+  fmt::print(
+      "{}volumes fitted to all moments in {} cells, to fewer in {}, not in {}; volume of the particles "
+      "{:.9g}, "
+      "without the fit {:.9g}\n",
+      prefix, all, fewer, none, fit.volume_after, fit.volume_before);
+}
+
 void print_report(const Scene& scene, const RunFigures& f) {
   if (!f.errors.empty()) {
     size_t width = 12;
@@ -156,6 +186,7 @@ void print_report(const Scene& scene, const RunFigures& f) {
              f.steps_timed + f.iterations, sweep, f.seconds, f.ns_per_particle_step(), sweep,
              static_cast<double>(peak_bytes()) / 1e6);
   print_cut_volume(f.cut, "");
+  print_moment_fit(scene, f.moment_fit, "");
   const auto& b = f.balance;
   fmt::print("force ratio {:.2e}, energy ratio {:.2e}\n", b.force_ratio, b.energy_ratio);
   print_resultant(scene, b, "");

@@ -21,6 +21,7 @@ struct RunFigures {
   int particles = 0, boundary_nodes = 0;
   size_t state_bytes = 0;
   CutVolume cut;
+  MomentFit moment_fit;
   VoidFilterReport void_filter;
   BalanceReport balance;
   std::string state_hash;  ///< of the particles' bits at the end
@@ -41,6 +42,9 @@ std::string summary_json(const Scene& scene, const RunFigures& figures);
 
 /// Volumes of bodies with cut lattices, in a line that begins with `prefix`; nothing where there are none.
 void print_cut_volume(const CutVolume& volume, const std::string& prefix);
+
+/// What the fit of moments did, in the same way.
+void print_moment_fit(const Scene& scene, const MomentFit& fit, const std::string& prefix);
 
 /// Resultant and torque of the tractions beside the exact ones, in lines that begin with `prefix`.
 void print_resultant(const Scene& scene, const BalanceReport& balance, const std::string& prefix);

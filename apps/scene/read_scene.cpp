@@ -12,6 +12,7 @@
 #include "scene/read_basis.hpp"
 #include "scene/read_grid.hpp"
 #include "scene/read_lattice.hpp"
+#include "scene/read_moment_fit.hpp"
 #include "scene/read_region.hpp"
 #include "scene/read_stress_field.hpp"
 #include "scene/scene.hpp"
@@ -201,6 +202,7 @@ void read_method(TableReader r, Scene& scene) {
       r.number("fill_criterion", {0, 1, false, true}, 0.0,
                "tau: cells filled by less than 1 - tau count as boundary cells; 0: no such cells");
   m.void_filter = r.boolean("void_filter", false);
+  read_moment_fit(r, scene);
   m.allow_particles_on_grid_lines = r.boolean("allow_particles_on_grid_lines", false);
   r.finish();
 }
@@ -266,7 +268,12 @@ StaticSpec read_static(TableReader r) {
   return s;
 }
 
-OutputSpec read_output(TableReader r) {
+constexpr const char* recovery_is_linear =
+    "is for method.basis = \"linear\": it projects on the linear functions of the grid, and would take away "
+    "what "
+    "a smoother basis gains";
+
+OutputSpec read_output(TableReader r, BasisKind basis) {
   static const std::vector<std::string> fields = {"id",     "displacement", "velocity",   "cauchy_stress",
                                                   "volume", "mass",         "in_boundary"};
   auto allowed = fields;
@@ -275,6 +282,9 @@ OutputSpec read_output(TableReader r) {
   o.every =
       r.integer("every", 0, 1'000'000'000'000LL, 0, "steps between frames; 0: first and last state only");
   o.fields = r.texts("fields", allowed, fields);
+  if (basis != BasisKind::linear &&
+      std::find(o.fields.begin(), o.fields.end(), allowed.back()) != o.fields.end())
+    r.fail(*r.source().get("fields"), "fields", fmt::format("'{}' {}", allowed.back(), recovery_is_linear));
   o.grid = r.boolean("grid", false);
   o.checkpoint_minutes =
       r.number("checkpoint_minutes", Range::at_least(0), 10.0, "wall time; 0: at an interrupt only");
@@ -300,7 +310,8 @@ ColumnComparison read_column(TableReader& r, const ElasticSpec& material) {
   return c;
 }
 
-Comparison read_comparison(TableReader& document, const ElasticSpec& material, MoreNorms& more) {
+Comparison read_comparison(TableReader& document, const ElasticSpec& material, BasisKind basis,
+                           MoreNorms& more) {
   if (!document.has("compare")) return {};
   TableReader r = document.table("compare");
   std::vector<std::string> keys = {"solution", "length", "traction",  "inner_radius", "outer_radius",
@@ -327,6 +338,8 @@ Comparison read_comparison(TableReader& document, const ElasticSpec& material, M
     comparison = read_ellipse(r);
   }
   more.recovered = r.boolean("recovered", false);
+  if (more.recovered && basis != BasisKind::linear)
+    r.fail(*r.source().get("recovered"), "recovered", recovery_is_linear);
   more.cell_means = r.boolean("cell_means", false);
   r.finish();
   return comparison;
@@ -438,8 +451,8 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
         "nothing loads the bodies (no traction, gravity, initial stress or velocity), so there is no static "
         "state to run to");
   scene.static_solution = read_static(r.table("static"));
-  scene.output = read_output(r.table("output"));
-  scene.compare = read_comparison(r, scene.bodies.front().material, scene.more_norms);
+  scene.output = read_output(r.table("output"), scene.method.basis);
+  scene.compare = read_comparison(r, scene.bodies.front().material, scene.method.basis, scene.more_norms);
   for (auto& table : r.tables("published")) scene.published.push_back(read_published(table, scene));
   r.finish();
   scene.resolved = resolved.toml();

@@ -46,6 +46,11 @@ struct BodySpec {
   Affine<Point> velocity;  ///< m/s
 };
 
+/// Whether particles lie on rings or are jittered, so that sums over those of a cell are not exact.
+inline bool is_irregular(const BodySpec& body) {
+  return std::holds_alternative<ConcentricLattice>(body.lattice) || body.jitter.amount > 0;
+}
+
 /// How a traction becomes nodal forces.
 enum class Imposition {
   virtual_stress,           ///< modified virtual stress boundary, Eqs. (27), (28)
@@ -91,6 +96,7 @@ struct MethodSpec {
   int cell_gauss_points = 1;  ///< of the original virtual stress boundary method, per direction
   double fill_criterion = 0;  ///< tau, see kernels/mark_underfilled_cells.hpp; 0: off
   bool void_filter = false;   ///< see kernels/filter_voids.hpp
+  bool moment_fit = false;    ///< see run/moment_fit.hpp
   bool allow_particles_on_grid_lines = false;
 };
 

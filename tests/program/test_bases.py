@@ -99,6 +99,24 @@ class Keys(ProgramTest):
         self.assertEqual(done.returncode, 2)
         self.assertIn("quadratic_bspline", done.stderr)
 
+    def test_the_recovered_stress_is_for_the_linear_basis(self):
+        text = (SCENES / "cylinder.toml").read_text()
+        for name in WIDE:
+            scene = text + '\n[output]\nfields = ["id", "recovered_stress"]\n'
+            line = scene[:scene.index("fields =")].count("\n") + 1
+            done = vsb("check", self.write(scene), *basis(name))
+            self.assertEqual(done.returncode, 2, name)
+            self.assertRegex(done.stderr, rf"scene\.toml:{line}:\d+: .*output\.fields")
+            self.assertIn('is for method.basis = "linear"', done.stderr)
+            scene = text.replace("[compare]\n", "[compare]\nrecovered = true\n")
+            line = scene[:scene.index("recovered =")].count("\n") + 1
+            done = vsb("check", self.write(scene), *basis(name))
+            self.assertEqual(done.returncode, 2, name)
+            self.assertRegex(done.stderr, rf"scene\.toml:{line}:\d+: .*compare\.recovered")
+            self.assertIn('is for method.basis = "linear"', done.stderr)
+            allowed = ("--set", "compare.recovered=false", "--set", "compare.cell_means=true")
+            self.assertEqual(self.check(*basis(name), *allowed).returncode, 0, name)
+
     def test_particles_on_grid_lines_do_no_harm(self):
         # Points at 0.125 m (k + 1), every eighth of them on a line between cells of 1 m.
         text = (SCENES / "column.toml").read_text().replace(

@@ -2,10 +2,12 @@
 """Virtual stress fields that vary in space, tractions at all nodes, and what is warned of about both."""
 import math
 import re
+import subprocess
+import sys
 import unittest
 
 import numpy as np
-from vsb_program import SCENES, ProgramTest, last_fields, vsb
+from vsb_program import ROOT, SCENES, ProgramTest, last_fields, vsb
 
 DISC = """
 dimension = 2
@@ -126,6 +128,27 @@ class Resultants(FieldTest):
         self.assertAlmostEqual(quarter / full, 0.25, delta=1e-12)
         self.assertAlmostEqual(both / full, 1.25, delta=1e-12)
 
+    def test_every_field_follows_every_time_function(self):
+        fields = ('nodes = "all"\nhydrostatic = { unit_weight = 1e4, level = 5.0 }',
+                  'surface.half_space = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n'
+                  'hydrostatic = { unit_weight = 1e4, level = 5.0 }',
+                  'nodes = "all"\naffine = { value = [7, 7, 7, 7, 0, 0], dx = [10, 20, 30, 40, 0, 0], dy = [1, 2, 3, 4, 0, 0] }',
+                  'nodes = "all"\nplanar_blend = { start = { point = [0.0, -3.0], pressure = 9e3 }, '
+                  'end = { point = [0.0, 3.0], pressure = 3e3 } }',
+                  'nodes = "all"\nradial_blend = { center = [0.0, -5.0], inner = { radius = 1.0, pressure = 9e3 }, '
+                  'outer = { radius = 9.0, pressure = 0.0 } }')
+        for field in fields:
+            full = self.run_scene(self.disc(field, kappa=1e-6))  # nothing moves
+            dt, force = full["dt"], full["net_force"][1]
+            self.assertGreater(abs(force), 1)
+            for time, factor in ((f"ramp = {4 * dt}", 1 / 4), (f"smooth_ramp = {4 * dt}", 10 / 4**3 - 15 / 4**4 + 6 / 4**5),
+                                 ("smooth_ramp_steps = 2", 0.5), (f"step = {dt / 2}", 1), (f"step = {2 * dt}", 0),
+                                 (f"table = [[0, -1], [{2 * dt}, 0], [{4 * dt}, 8]]", -0.5),
+                                 (f"sine = {{ period = {12 * dt}, amplitude = 0.5, mean = 1 }}", 1.25)):
+                summary = self.run_scene(self.disc(f"{field}\ntime = {{ {time} }}", kappa=1e-6))
+                self.assertAlmostEqual(summary["net_force"][1] / force, factor, delta=1e-9, msg=f"{field} {time}")
+                self.assertAlmostEqual(summary["exact_force"][1] / full["exact_force"][1], factor, delta=1e-9, msg=f"{field} {time}")
+
 
 class UnderWater(ProgramTest):
     def test_stress_of_a_submerged_column_is_linear_in_depth(self):
@@ -224,6 +247,27 @@ class Reading(FieldTest):
         self.assertAlmostEqual(pull["x"][1] / pull["z"][1], 1, delta=1e-5)
         self.assertAlmostEqual(pull["x"][0] / pull["z"][2], 1, delta=1e-5)
         self.assertGreater(abs(pull["x"][0] / pull["x"][1] - 1), 1e-2)
+
+
+class Pictures(FieldTest):
+    def plot(self, *runs):
+        picture = self.folder / "rings.png"
+        done = subprocess.run([sys.executable, ROOT / "apps" / "plot_rings.py", picture, *runs], capture_output=True, text=True)
+        return done, picture
+
+    def test_rings_side_by_side(self):
+        self.run_scene("ring")
+        self.run_scene("ring-nodes")
+        done, picture = self.plot(f"blend={self.folder / 'ring'}", f"p = const={self.folder / 'ring-nodes'}")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(picture.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+
+    def test_what_has_no_exact_ring_is_refused(self):
+        self.run_scene(self.disc("pressure = 1e5"), out="disc")
+        done, picture = self.plot(f"disc={self.folder / 'disc'}")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("exact_cauchy_stress", done.stderr)
+        self.assertFalse(picture.exists())
 
 
 class Warnings(FieldTest):

@@ -270,6 +270,94 @@ class FillCriterion(LatticeTest):
                         "method.fill_criterion", ">= 0 and < 1")
 
 
+class MomentFit(LatticeTest):
+    FIT = ("--set", "method.moment_fit=true")
+
+    def test_a_closed_surface_of_rings_is_pushed_no_more(self):
+        pressure_times_radius = 1e5
+        at_the_start = ("--set", "time.kappa=1e-6")
+        plain = self.run_scene("cylinder-free", *at_the_start)
+        self.assertGreater(np.hypot(*plain["net_force"][:2]) / pressure_times_radius, 0.04)
+        fitted = self.run_scene("cylinder-free", *self.FIT, *at_the_start)
+        self.assertLess(np.hypot(*fitted["net_force"][:2]) / pressure_times_radius, 1e-12)
+        self.assertLess(abs(fitted["net_torque"][2]) / pressure_times_radius, 1e-12)
+
+    def test_nor_is_a_jittered_ball(self):
+        text = """
+dimension = 3
+grid = { lower = [-2.6, -2.7, -2.8], upper = [2.4, 2.3, 2.2], spacing = 0.5 }
+[[body]]
+shape = { ball = { center = [0.0, 0.0, 0.0], radius = 1.4 } }
+particles_per_cell = 4
+jitter = 0.3
+density = 1000.0
+material = { youngs_modulus = 1e9, poisson_ratio = 0.3 }
+[[traction]]
+pressure = 1e5
+[time]
+kappa = 1e-6
+steps = 1
+"""
+        pushed = lambda run: max(map(abs, run["net_force"] + run["net_torque"])) / 1e5
+        self.assertGreater(pushed(self.run_scene(self.write(text))), 1e-3)
+        self.assertLess(pushed(self.run_scene(self.write(text), *self.FIT)), 1e-12)
+
+    def test_masses_follow_the_volumes_and_what_was_done_is_told(self):
+        done = vsb("check", SCENES / "cylinder-free.toml", *self.FIT)
+        # The sum is the number of cells that hold particles, of which those beside the surface have fewer moments.
+        told = re.search(r"# volumes fitted to all moments in (\d+) cells, to fewer in (\d+), not in 0;", done.stdout)
+        done = vsb("check", SCENES / "cylinder-free.toml")
+        self.assertNotIn("moments", done.stdout.partition("name =")[0])
+        summary = self.run_scene("cylinder-free", *self.FIT, "--set", "time.kappa=1e-6")
+        cells = [summary["moment_fit"][name] for name in ("cells_of_all_moments", "cells_of_fewer", "cells_not_fitted")]
+        self.assertEqual(cells, [int(told[1]), int(told[2]), 0])
+        fields = last_fields(self.folder / "cylinder-free")
+        np.testing.assert_allclose(fields["mass"], 1000 * fields["volume"], rtol=1e-6)
+        occupied = {tuple(np.floor((x[:2] - [-5.875, -5.8]) / 0.5)) for x in fields["position"]}
+        self.assertEqual(sum(cells), len(occupied))
+        self.assertAlmostEqual(summary["moment_fit"]["volume"] / fields["volume"].sum(), 1, delta=1e-6)
+        self.assertGreater(np.ptp(fields["volume"] / np.hypot(*fields["position"][:, :2].T)), 1e-3)  # V = r dr dtheta no more
+        self.assertAlmostEqual(fields["volume"].sum() / (24 * math.pi), 1, delta=1e-3)
+
+    def errors_of(self, key, values, scene, *arguments):
+        """Of static solutions: e_tt and e_u, a column each."""
+        runs = [self.run_scene(scene, "--static", "--set", f"{key}={value}", *arguments)["errors"] for value in values]
+        return np.array([[errors["e_tt"], errors["e_u"]] for errors in runs])
+
+    def test_the_number_of_particles_on_a_ring_does_not_matter(self):
+        rings = ("body[0].lattice.concentric.per_ring", (74, 75, 77, 78), "cylinder-concentric")
+        plain, fitted = self.errors_of(*rings), self.errors_of(*rings, *self.FIT)
+        self.assertGreater(np.max(plain[:, 1]), 2 * np.min(plain[:, 1]))
+        self.assertLess(np.max(fitted[:, 1]), 1.05 * np.min(fitted[:, 1]))
+        self.assertLess(np.max(fitted[:, 0]), 1.02 * np.min(fitted[:, 0]))
+        self.assertLess(np.max(fitted[:, 0]), np.min(plain[:, 0]))
+
+    def test_a_jittered_cylinder_is_as_accurate_as_one_on_a_square_lattice(self):
+        seeds = ("body[0].seed", (1, 2, 3), "cylinder", "--set", "body[0].jitter=0.3")
+        plain, fitted = self.errors_of(*seeds), self.errors_of(*seeds, *self.FIT)
+        self.assertGreater(np.max(plain[:, 1]), 1e-6)
+        self.assertLess(np.max(fitted[:, 1]), 1.1 * 3.22e-7)
+        self.assertLess(np.max(fitted[:, 0]), 1.05 * 2.10e-2)
+
+    def test_where_there_is_nothing_to_fit_it_is_refused(self):
+        for scene, arguments, words in (("cylinder", (), "jitter"), ("cylinder-polar", (), "uniform grids"),
+                                        ("cylinder-concentric", ("--set", "method.basis=quadratic_bspline"), "linear"),
+                                        ("cylinder-concentric", ("--set", "method.basis=ugimp", "--set",
+                                                                 "method.gimp_half_width=0.125"), "linear")):
+            done = vsb("check", SCENES / f"{scene}.toml", *arguments, *self.FIT)
+            self.assertEqual(done.returncode, 2, scene)
+            self.assertIn("method.moment_fit", done.stderr)
+            self.assertIn(words, done.stderr)
+        text = (SCENES / "cylinder.toml").read_text().replace("[method]\n", "[method]\nmoment_fit = true\n")
+        line = text[:text.index("moment_fit")].count("\n") + 1
+        self.assertRegex(vsb("check", self.write(text)).stderr, rf"scene\.toml:{line}:\d+: .*method\.moment_fit")
+        done = vsb("check", SCENES / "cylinder-concentric.toml", "--set", 'method.moment_fit="yes"')
+        self.assertIn("method.moment_fit", done.stderr)
+        done = vsb("check", SCENES / "cylinder.toml", "--set", "body[0].jitter=0.2", *self.FIT)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("moment_fit = true", done.stdout)
+
+
 class CylinderOfRings(LatticeTest):
     def test_errors_at_h_05(self):
         text = (SCENES / "cylinder.toml").read_text()

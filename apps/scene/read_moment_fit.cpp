@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene/read_moment_fit.hpp"
+
+#include <algorithm>
+
+namespace vsb::app {
+
+namespace {
+
+std::string refusal(const Scene& scene) {
+  if (scene.method.basis != BasisKind::linear)
+    return "is for basis = \"linear\": sums with wider functions run over several cells, and fitting them "
+           "cell by "
+           "cell makes them worse";
+  if (scene.grid.mapped()) return "is for uniform grids, whose cells are boxes";
+  if (std::none_of(scene.bodies.begin(), scene.bodies.end(), is_irregular))
+    return "is for particles on rings (lattice.concentric) or with jitter: on a lattice of equal boxes the "
+           "plain "
+           "sums are exact in full cells";
+  return "";
+}
+
+}  // namespace
+
+void read_moment_fit(TableReader& method, Scene& scene) {
+  scene.method.moment_fit = method.boolean("moment_fit", false);
+  if (!scene.method.moment_fit) return;
+  if (const auto reason = refusal(scene); !reason.empty())
+    method.fail(*method.source().get("moment_fit"), "moment_fit", reason);
+}
+
+}  // namespace vsb::app
