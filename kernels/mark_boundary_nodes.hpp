@@ -203,10 +203,9 @@ struct MarkNodes {
     const int r = i / tiling.words, w = i % tiling.words;
     const Vector<2, int> at{{r % tiling.node_rows[0], r / tiling.node_rows[0]}};
     const Vector<2, int> from{{at[0] - 1 - reach, at[1] - 1 - reach}}, to{{at[0] + reach, at[1] + reach}};
-    const std::uint64_t active = tiling.existing(at, w, 1) &
-                                 dilated_word(bits.occupied, tiling, w, from, to, reach, 1 + reach);
-    const std::uint64_t marked =
-        active & dilated_word(bits.boundary, tiling, w, from, to, reach, 1 + reach);
+    const std::uint64_t active =
+        tiling.existing(at, w, 1) & dilated_word(bits.occupied, tiling, w, from, to, reach, 1 + reach);
+    const std::uint64_t marked = active & dilated_word(bits.boundary, tiling, w, from, to, reach, 1 + reach);
     const int nodes = math::min(tiling.cells_x + 1 - 64 * w, 64);
     for (int b = 0; b < nodes; ++b) {
       const int node = r * (tiling.cells_x + 1) + 64 * w + b;
@@ -253,9 +252,9 @@ int mark_boundary_nodes(const Exec& exec, const Particles<Dim, Real, Device>& pa
     Kokkos::parallel_for("vsb::add_underfilled_cells", over_cell_words,
                          kernel::AddUnderfilled<Device>{bits, tiling.words});
   int count = 0;
-  Kokkos::parallel_reduce("vsb::mark_boundary_nodes", over_node_words,
-                          kernel::MarkNodes<Dim, Device>{bits, tiling, Basis::reach, tractions, boundary, conservative},
-                          count);
+  Kokkos::parallel_reduce(
+      "vsb::mark_boundary_nodes", over_node_words,
+      kernel::MarkNodes<Dim, Device>{bits, tiling, Basis::reach, tractions, boundary, conservative}, count);
   mirror_masks(exec, basis, boundary);
   exec.fence();
   return count;
