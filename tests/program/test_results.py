@@ -226,7 +226,7 @@ class SameBits(ProgramTest):
     def test_serial_build_and_openmp_build(self):
         other = os.environ.get("VSB_SERIAL_PROGRAM", "")
         if not pathlib.Path(other).is_file():
-            self.skipTest("the serial preset is not built; ./check builds it")
+            self.skipTest("the preset bits is not built; ./check builds it")
         self.assertIn("Serial", vsb("info", program=other).stdout)
         self.assertEqual(self.hash("--threads", 2), self.hash(program=other))
         mine = last_fields(self.folder / "cylinder")
