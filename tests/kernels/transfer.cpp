@@ -64,6 +64,10 @@ Vector<Dim, Real> some_vector() {
 /// A material that reports one row of the velocity gradient as its stress.
 template <int Row>
 struct ReportGradient {
+  template <int Dim>
+  static constexpr int state_size() {
+    return 0;
+  }
   template <int Dim, class T>
   KOKKOS_FUNCTION SymmetricTensor<Dim, T> advance(const SymmetricTensor<Dim, T>&, const Matrix<Dim, T>& L,
                                                   T) const {
