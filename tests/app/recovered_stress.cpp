@@ -172,7 +172,7 @@ TEST_CASE("means over cells, by hand") {
 TEST_CASE("norms of the column, by hand: particles count alike, means by volume") {
   Scene scene = grid_scene(1, 0, 1, 2);
   vsb::test::add_body(scene, everywhere(), 1, BoundaryBoxes::keep);
-  scene.compare = ColumnComparison{2, 10};
+  scene.compare = ColumnComparison{2, 10, true};
   Snapshot s;
   add_particle(s, {0.25, 0, 0}, 1, {-9, 0, 0, 0, 0, 0});   // exact: -10
   add_particle(s, {0.75, 0, 0}, 3, {-13, 0, 0, 0, 0, 0});  // mean of the cell -12

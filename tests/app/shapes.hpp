@@ -30,7 +30,7 @@ inline app::BodySpec& add_body(app::Scene& scene, const app::Region& region, int
   body.lattice = app::CellLattice{{n, n, n}};
   body.boundary = boundary;
   body.density = 1000;
-  body.material = {1e6, 0.2};
+  body.material = {app::MaterialLaw::linear_elastic, 1e6, 0.2};
   return body;
 }
 
