@@ -34,13 +34,10 @@ void for_each_scene(const Work& work) {
   const auto with_size = [&](auto dimension, auto real) {
     for (const auto& size : sizes<decltype(dimension)::value>()) work(dimension, real, size);
   };
-  const auto with_real = [&](auto dimension) {
-    with_size(dimension, double());
-    with_size(dimension, float());
-  };
-  with_real(std::integral_constant<int, 1>());
-  with_real(std::integral_constant<int, 2>());
-  with_real(std::integral_constant<int, 3>());
+  with_size(std::integral_constant<int, 1>(), double());
+  with_size(std::integral_constant<int, 2>(), double());
+  with_size(std::integral_constant<int, 3>(), double());
+  with_size(std::integral_constant<int, 3>(), float());
 }
 
 inline std::vector<Scatter> strategies() {

@@ -77,10 +77,16 @@ void particles_to_grid(const Exec& exec, const Particles<Dim, Real, Device>& par
                        const BoundaryNodes<Device>& boundary, ScatterWorkspace<Real, Device>& workspace,
                        const Basis& basis, const Field& virtual_stress, const Vector<Dim, Real>& gravity,
                        Scatter strategy) {
-  scatter(exec, "vsb::particles_to_grid", strategy, particles.count(), basis, bins, workspace,
-          kernel::ParticlesToGrid<Basis, Field, Dim, Real, Device>{particles, basis, virtual_stress, boundary,
-                                                                   gravity},
-          nodes.sums);
+  const auto sum = [&](const auto& field) {
+    scatter(exec, "vsb::particles_to_grid", strategy, particles.count(), basis, bins, workspace,
+            kernel::ParticlesToGrid<Basis, std::decay_t<decltype(field)>, Dim, Real, Device>{
+                particles, basis, field, boundary, gravity},
+            nodes.sums);
+  };
+  if constexpr (Field::loaded)
+    sum(virtual_stress);
+  else
+    sum(NoVirtualStress{});  // one kernel for all fields that have nothing to add to particles
 }
 
 }  // namespace vsb

@@ -130,12 +130,12 @@ struct ForceSize {
 };
 
 /// One particle's stress in the static state; the reduction's maximum is the largest strain component.
-template <class Basis, class Material, int Dim, class Real, class Device>
+template <class Basis, int Dim, class Real, class Device>
 struct StrainParticle {
   Particles<Dim, Real, Device> particles;
   typename Nodes<Dim, Real, Device>::Fields u;
   Basis basis;
-  Material material;
+  LinearElastic<Real> material;
 
   KOKKOS_FUNCTION void operator()(int p, Real& largest) const {
     const auto G = basis.shape(particles.position_of(p)).gradient(u);
@@ -226,18 +226,15 @@ double strain_particles(const Exec& exec, const Particles<Dim, Real, Device>& pa
                         const std::vector<Body<Real>>& bodies, const Basis& basis,
                         const typename Nodes<Dim, Real, Device>::Fields& u) {
   double largest = 0;
-  for (const auto& body : bodies)
-    std::visit(
-        [&](const auto& material) {
-          using Functor = kernel::StrainParticle<Basis, std::decay_t<decltype(material)>, Dim, Real, Device>;
-          Real of_body = 0;
-          Kokkos::parallel_reduce("vsb::strain_particles",
-                                  Kokkos::RangePolicy<Exec>(exec, body.first, body.last),
-                                  Functor{particles, u, basis, material}, Kokkos::Max<Real>(of_body));
-          exec.fence();
-          if (body.last > body.first) largest = math::max(largest, static_cast<double>(of_body));
-        },
-        body.material);
+  for (const auto& body : bodies) {
+    Real of_body = 0;
+    Kokkos::parallel_reduce("vsb::strain_particles", Kokkos::RangePolicy<Exec>(exec, body.first, body.last),
+                            kernel::StrainParticle<Basis, Dim, Real, Device>{particles, u, basis,
+                                                                             small_strain_law(body.material)},
+                            Kokkos::Max<Real>(of_body));
+    exec.fence();
+    if (body.last > body.first) largest = math::max(largest, static_cast<double>(of_body));
+  }
   return largest;
 }
 

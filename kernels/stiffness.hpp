@@ -18,12 +18,12 @@ namespace vsb {
 namespace kernel {
 
 /// What the particles first, ..., last - 1 of one material add to K u.
-template <class Basis, class Material, int Dim, class Real, class Device>
+template <class Basis, int Dim, class Real, class Device>
 struct StiffnessForce {
   static constexpr int columns = Dim;
   Particles<Dim, Real, Device> particles;
   Basis basis;
-  Material material;
+  LinearElastic<Real> material;
   int first, last;
   typename Nodes<Dim, Real, Device>::Fields displacement;  ///< [node][Dim], m
 
@@ -42,12 +42,12 @@ struct StiffnessForce {
 };
 
 /// What the same particles add to the blocks K_II, entry (i, j) in column i Dim + j.
-template <class Basis, class Material, int Dim, class Real, class Device>
+template <class Basis, int Dim, class Real, class Device>
 struct StiffnessBlock {
   static constexpr int columns = Dim * Dim;
   Particles<Dim, Real, Device> particles;
   Basis basis;
-  Material material;
+  LinearElastic<Real> material;
   int first, last;
 
   template <class Sink>
@@ -104,7 +104,7 @@ class Stiffness {
   }
 
  private:
-  template <template <class, class, int, class, class> class Contribution, class Exec, class... Inputs>
+  template <template <class, int, class, class> class Contribution, class Exec, class... Inputs>
   void sum_over_bodies(const Exec& exec, const std::string& label, ScatterWorkspace<Real, Device>& workspace,
                        const Fields& target, const Inputs&... inputs) {
     Kokkos::deep_copy(exec, target, Real(0));
@@ -112,15 +112,10 @@ class Stiffness {
       term_ = Fields("vsb::stiffness_of_body", target.extent(0), target.extent(1));
     for (const auto& body : bodies_) {
       const Fields& sums = bodies_.size() > 1 ? term_ : target;
-      std::visit(
-          [&](const auto& material) {
-            using Material = std::decay_t<decltype(material)>;
-            scatter(exec, label, strategy_, particles_.count(), basis_, bins_, workspace,
-                    Contribution<Basis, Material, Dim, Real, Device>{particles_, basis_, material, body.first,
-                                                                     body.last, inputs...},
-                    sums);
-          },
-          body.material);
+      scatter(exec, label, strategy_, particles_.count(), basis_, bins_, workspace,
+              Contribution<Basis, Dim, Real, Device>{particles_, basis_, small_strain_law(body.material),
+                                                     body.first, body.last, inputs...},
+              sums);
       if (bodies_.size() > 1)
         Kokkos::parallel_for("vsb::add_stiffness_of_body",
                              Kokkos::RangePolicy<Exec>(exec, 0, static_cast<int>(target.extent(0))),

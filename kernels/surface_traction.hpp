@@ -7,7 +7,8 @@
 ///   a_b <- det(F) F^-T a_b = cof(I + dt L) a_b   step by step (the cofactor of a product is the product of
 ///   the cofactors, so that no deformation gradient need be kept).
 ///
-/// Reads nodal velocities and particle positions; writes nodal forces, and positions and areas of the points.
+/// Reads nodal velocities and particle positions; writes nodal forces, and forces, positions and areas of the
+/// points.
 #pragma once
 
 #include <vsb/kernels/locate_particles.hpp>
@@ -20,19 +21,30 @@ namespace vsb {
 
 namespace kernel {
 
+/// One point: sbar a, in a kernel of its own so that what scatters the forces is the same for every field.
+template <class Field, int Dim, class Real, class Device>
+struct LoadSurfacePoint {
+  SurfacePoints<Dim, Real, Device> points;
+  Field virtual_stress;
+
+  KOKKOS_FUNCTION void operator()(int b) const {
+    const auto x = points.position_of(b);
+    const auto force = virtual_stress.at(x, points.tractions(b)).stress * points.area_of(b);
+    for (int i = 0; i < Dim; ++i) points.force(b, i) = force[i];
+  }
+};
+
 /// The nodal forces of one point.
-template <class Basis, class Field, int Dim, class Real, class Device>
+template <class Basis, int Dim, class Real, class Device>
 struct SurfaceForce {
   static constexpr int columns = Dim;
   SurfacePoints<Dim, Real, Device> points;
   Basis basis;
-  Field virtual_stress;
 
   template <class Sink>
   KOKKOS_FUNCTION void operator()(int b, const Sink& sink) const {
-    const auto x = points.position_of(b);
-    const auto force = virtual_stress.at(x, points.tractions(b)).stress * points.area_of(b);
-    const auto shape = basis.shape(x);
+    const auto force = points.force_of(b);
+    const auto shape = basis.shape(points.position_of(b));
     for (int a = 0; a < Basis::support; ++a)
       for (int i = 0; i < Dim; ++i) sink(a, shape.node[a], i) += shape.N[a] * force[i];
   }
@@ -84,9 +96,10 @@ int add_surface_tractions(const Exec& exec, SurfacePoints<Dim, Real, Device>& po
   const auto where = locate_particles(exec, points, points.bins, basis);
   if (where.lost >= 0) return where.lost;
   if (where.changed) sort_by_bin(exec, points.bins);
+  Kokkos::parallel_for("vsb::load_surface_point", Kokkos::RangePolicy<Exec>(exec, 0, points.count()),
+                       kernel::LoadSurfacePoint<Field, Dim, Real, Device>{points, virtual_stress});
   scatter(exec, "vsb::surface_force", strategy, points.count(), basis, points.bins, workspace,
-          kernel::SurfaceForce<Basis, Field, Dim, Real, Device>{points, basis, virtual_stress},
-          points.node_force);
+          kernel::SurfaceForce<Basis, Dim, Real, Device>{points, basis}, points.node_force);
   Kokkos::parallel_for("vsb::add_surface_force", Kokkos::RangePolicy<Exec>(exec, 0, nodes.count()),
                        kernel::AddSurfaceForce<Dim, Real, Device>{nodes, points.node_force});
   return -1;

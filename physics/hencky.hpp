@@ -50,12 +50,8 @@ struct Hencky {
   /// M of Eq. (29), Pa: stiffness in uniaxial strain, of the undeformed material.
   KOKKOS_FUNCTION Real constrained_modulus() const { return lambda + 2 * shear_modulus; }
 
-  /// The law for small strains, see LinearElastic::strained.
-  template <int Dim, class T>
-  KOKKOS_FUNCTION SymmetricTensor<Dim, T> strained(const SymmetricTensor<Dim, T>& sigma,
-                                                   const Matrix<Dim, T>& L, T dt) const {
-    return LinearElastic<Real>{lambda, shear_modulus}.strained(sigma, L, dt);
-  }
+  /// See material.hpp.
+  KOKKOS_FUNCTION LinearElastic<Real> small_strain_law() const { return {lambda, shear_modulus}; }
 
   /// The Cauchy stress of F = I + H.
   template <int Dim, class T>

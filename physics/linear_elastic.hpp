@@ -44,6 +44,9 @@ struct LinearElastic {
     return strained(sigma + jaumann_rotation(sigma, L, dt), L, dt);
   }
 
+  /// Itself; see material.hpp.
+  KOKKOS_FUNCTION LinearElastic small_strain_law() const { return *this; }
+
   /// sigma + C : de, de = dt sym(L), in a frame that does not turn.
   template <int Dim, class T>
   KOKKOS_FORCEINLINE_FUNCTION SymmetricTensor<Dim, T> strained(const SymmetricTensor<Dim, T>& sigma,

@@ -26,12 +26,14 @@ struct SurfacePoints {
                     ///< in 2D)
   Kokkos::View<TractionMask*, Device> tractions;  ///< [point]: the tractions that act on it
   Kokkos::View<int*, Device> carrier;             ///< [point]: see SurfaceCarrier
+  Fields force;                                   ///< [point][Dim]: traction times area, N
   ParticleBins<Device> bins;                      ///< which points share their support nodes
   Fields node_force;                              ///< [node][Dim], N
 
   KOKKOS_FUNCTION int count() const { return static_cast<int>(position.extent(0)); }
   KOKKOS_FUNCTION Vector<Dim, Real> position_of(int b) const { return row(position, b); }
   KOKKOS_FUNCTION Vector<Dim, Real> area_of(int b) const { return row(area, b); }
+  KOKKOS_FUNCTION Vector<Dim, Real> force_of(int b) const { return row(force, b); }
 
  private:
   KOKKOS_FUNCTION static Vector<Dim, Real> row(const Fields& field, int b) {
@@ -51,6 +53,7 @@ SurfacePoints<Dim, Real, Device> allocate_surface_points(int points, int nodes, 
   s.area = typename Points::Fields("vsb::surface_area", n, Dim);
   s.tractions = decltype(s.tractions)("vsb::surface_tractions", n);
   s.carrier = decltype(s.carrier)("vsb::surface_carrier", n);
+  s.force = typename Points::Fields("vsb::surface_force", n, Dim);
   s.bins = allocate_bins<Device>(points, bins);
   s.node_force = typename Points::Fields("vsb::surface_node_force", static_cast<size_t>(nodes), Dim);
   return s;

@@ -6,32 +6,16 @@
 
 namespace vsb::app {
 
-namespace {
-
-template <int Dim>
-std::unique_ptr<Simulation> make_in_dimension(const Scene& scene) {
-  if (scene.grid.mapped()) return make_instance<Dim, InstanceOf::mapped>(scene);
-  if (scene.single_precision) return make_instance<Dim, InstanceOf::linear_float>(scene);
+std::unique_ptr<Simulation> make_simulation(const Scene& scene) {
+  if (scene.grid.mapped()) return make_instance<InstanceOf::mapped>(scene);
+  if (scene.single_precision) return make_instance<InstanceOf::linear_float>(scene);
   switch (scene.method.basis) {
     case BasisKind::ugimp:
-      return make_instance<Dim, InstanceOf::ugimp>(scene);
+      return make_instance<InstanceOf::ugimp>(scene);
     case BasisKind::quadratic_bspline:
-      return make_instance<Dim, InstanceOf::quadratic_bspline>(scene);
+      return make_instance<InstanceOf::quadratic_bspline>(scene);
     default:
-      return make_instance<Dim, InstanceOf::linear>(scene);
-  }
-}
-
-}  // namespace
-
-std::unique_ptr<Simulation> make_simulation(const Scene& scene) {
-  switch (scene.dimension) {
-    case 1:
-      return make_in_dimension<1>(scene);
-    case 2:
-      return make_in_dimension<2>(scene);
-    default:
-      return make_in_dimension<3>(scene);
+      return make_instance<InstanceOf::linear>(scene);
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The simulations that the program can make, one for each dimension, precision and basis; each is compiled
-/// on its own, from simulation_instance.cpp.in.
+/// The simulations that the program can make, one for each precision and basis, in all dimensions; each is
+/// compiled on its own, from simulation_instance.cpp.in.
 #pragma once
 
 #include "run/simulation.hpp"
@@ -10,7 +10,7 @@ namespace vsb::app {
 
 enum class InstanceOf { linear, linear_float, mapped, ugimp, quadratic_bspline };
 
-template <int Dim, InstanceOf instance>
+template <InstanceOf instance>
 std::unique_ptr<Simulation> make_instance(const Scene& scene);
 
 }  // namespace vsb::app

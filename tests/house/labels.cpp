@@ -10,7 +10,7 @@
 #include <vsb/kernels/static_solution.hpp>
 #include <vsb/kernels/unsupported_load.hpp>
 
-#include "support.hpp"
+#include "wide_bases.hpp"
 
 using namespace vsb;
 using namespace vsb::test;
@@ -59,10 +59,9 @@ bool in_order(const std::string& report) {
   return bracket == std::string::npos || label.compare(bracket + 1, 5, "vsb::") == 0;
 }
 
-template <int Dim>
-void run_everything(Scatter strategy) {
-  const auto grid = make_grid<Dim, double>({{8, 8, 8}});
-  const LinearBasis<Dim, double> basis{grid};
+/// `basis`: on `grid`, or with a layer of ghost cells around it.
+template <class Basis, int Dim>
+void run_everything(const Basis& basis, const UniformGrid<Dim, double>& grid, Scatter strategy) {
   auto block = allocate_particles<Dim, double, Device>(64);
   edit(block, [&](const auto& particles) {
     Random random(81);
@@ -96,15 +95,18 @@ void run_everything(Scatter strategy) {
     for (int i = 0; i < Dim; ++i) x(0, i) = grid.lower[i] + 0.5 * grid.spacing[i];
   });
   edit(state.surface.carrier, [](const auto& carrier) { carrier(0) = carried_by_grid; });
-  using Original = OriginalVirtualStress<decltype(pressure), decltype(grid), Device>;
-  const Original original{pressure, grid, state.occupancy.cells, 1u, 2};
-  REQUIRE(step(Exec(), state, bodies, basis, original, options) == -1);
+  if constexpr (Basis::reach == 0) {
+    using Original = OriginalVirtualStress<decltype(pressure), UniformGrid<Dim, double>, Device>;
+    const Original original{pressure, grid, state.occupancy.cells, 1u, 2};
+    REQUIRE(step(Exec(), state, bodies, basis, original, options) == -1);
+  }
+  REQUIRE(step(Exec(), state, bodies, basis, pressure, options) == -1);
   balance(Exec(), state, bodies, basis, pressure, options);
   balancing_force(Exec(), block.particles, pressure, 1u, grid.lower);
   REQUIRE(find_invalid(Exec(), block.particles).particle == -1);
   find_unsupported_load(Exec(), state.nodes, state.occupancy.bins, basis, 1e-10);
-  Stiffness<LinearBasis<Dim, double>, Dim, double, Device> stiffness(block.particles, bodies, basis,
-                                                                     state.occupancy.bins, strategy);
+  Stiffness<Basis, Dim, double, Device> stiffness(block.particles, bodies, basis, state.occupancy.bins,
+                                                  strategy);
   const auto u = state.nodes.velocity;
   solve_displacement(Exec(), stiffness, state.nodes, u, StaticOptions{1e-10, 2},
                      [](int, double) { return true; });
@@ -122,12 +124,18 @@ void run_everything(Scatter strategy) {
 TEST_CASE("every label starts with vsb::") {
   {
     const Listener listener;
+    const auto line = make_grid<1, double>({{8, 8, 8}});
+    const auto plane = make_grid<2, double>({{8, 8, 8}});
+    const auto space = make_grid<3, double>({{8, 8, 8}});
+    auto wide = WideBasis<QuadraticBSplineBasis<2, double>>::on(plane);
+    wide.walls.fixed[0][0] = 1;
+    wide.walls.fixed[1][1] = 3;
     for (const Scatter strategy : {Scatter::atomic, Scatter::duplicated, Scatter::gathered}) {
       if (strategy == Scatter::duplicated && !std::is_same_v<Device::memory_space, Kokkos::HostSpace>)
         continue;
-      run_everything<1>(strategy);
-      run_everything<2>(strategy);
-      run_everything<3>(strategy);
+      run_everything(LinearBasis<1, double>{line}, line, strategy);
+      run_everything(wide, plane, strategy);
+      run_everything(LinearBasis<3, double>{space}, space, strategy);
     }
   }
   for (const auto& report : seen) {
@@ -149,9 +157,13 @@ TEST_CASE("every label starts with vsb::") {
                              "reduce: vsb::find_invalid",
                              "scan: vsb::scan_offsets",
                              "for: vsb::update_stress",
+                             "for: vsb::load_surface_point",
                              "for: vsb::surface_force",
                              "for: vsb::move_surface_points",
                              "for: vsb::subtract_cell_virtual_stress",
+                             "for: vsb::fold_ghost_nodes",
+                             "for: vsb::mirror_vectors",
+                             "for: vsb::mirror_masks",
                              "for: vsb::node_balance",
                              "for: vsb::divergence_moments",
                              "region: vsb::solve_displacement",

@@ -311,7 +311,7 @@ TEST_CASE("MarkOccupied, FindExterior, FindBoundary and MarkNodes in a row of fi
   // Without boundary cells traction 2 acts at the active nodes all the same, where it is declared.
   Kokkos::deep_copy(bits.boundary, std::uint64_t(0));
   count = 0;
-  kernel::MarkNodes<1, Host>{bits, tiling, tractions, boundary, 4u}(0, count);
+  kernel::MarkNodes<1, Host>{bits, tiling, 0, tractions, boundary, 4u}(0, count);
   CHECK(count == 2);
   for (int node = 0; node < 6; ++node) CHECK(boundary(node) == (expected[node] & 4u));
 }
