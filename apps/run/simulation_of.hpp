@@ -68,7 +68,9 @@ class SimulationOf final : public Simulation {
         void_filter_effect(exec_, state_.particles, o.cells, basis_, o.tractions, o.boundary_node_count);
     return {effect.false_voids, effect.dropped_nodes};
   }
-  std::vector<std::string> advice() const override { return field_advice(scene_, placed_, occupied_cells()); }
+  std::vector<std::string> advice() const override {
+    return field_advice(scene_, placed_, cells_of_bodies());
+  }
 
   size_t state_bytes() const override {
     const auto& o = state_.occupancy;
@@ -409,6 +411,25 @@ class SimulationOf final : public Simulation {
       for (int i = Dim - 1; i >= 0; --i)
         index = index * cells.cells[static_cast<size_t>(i)] + (cell[i] - Basis::reach);
       cells.occupied[static_cast<size_t>(index)] = true;
+    }
+    return cells;
+  }
+
+  /// The same with the void cells that the void filter takes for parts of a body.
+  OccupiedCells cells_of_bodies() const {
+    auto cells = occupied_cells();
+    const auto outside = Kokkos::create_mirror_view_and_copy(
+        Kokkos::HostSpace(), state_.occupancy.cells.outside, "vsb::outside on host");
+    if (outside.span() == 0) return cells;
+    for (size_t index = 0; index < cells.occupied.size(); ++index) {
+      Vector<3, int> cell{{0, 0, 0}};
+      int row = 0;
+      for (int i = 0, rest = static_cast<int>(index); i < Dim; ++i) {
+        cell[i] = rest % scene_.grid.cells[static_cast<size_t>(i)] + Basis::reach;
+        rest /= scene_.grid.cells[static_cast<size_t>(i)];
+      }
+      for (int i = Dim - 1; i > 0; --i) row = row * basis_.grid.cells[i] + cell[i];
+      if (!(outside(row, cell[0] / 64) >> (cell[0] % 64) & 1)) cells.occupied[index] = true;
     }
     return cells;
   }
