@@ -328,6 +328,11 @@ class Warnings(FieldTest):
                 self.assertNotIn("the wall at", text, path.stem)
                 self.assertNotIn("jumps inside", text, path.stem)
 
+    def test_voids_that_the_filter_drops_have_no_walls(self):
+        scene = SCENES / "cylinder-voids.toml"
+        self.assertEqual(self.warnings(scene), "")
+        self.assertIn("the wall at", self.warnings(scene, "--set", "method.void_filter=false"))
+
 
 if __name__ == "__main__":
     unittest.main()
