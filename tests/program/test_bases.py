@@ -63,6 +63,41 @@ class Frames(ProgramTest):
             self.assertEqual(len(hashes), 1, name)
 
 
+class Accurate(ProgramTest):
+    """The setting by its name, judged by the static solver."""
+    HALF = ("--static", "--set", "grid.spacing=0.5")
+
+    def test_what_the_name_stands_for(self):
+        by_name = self.run_scene("cylinder-accurate", *self.HALF)
+        by_keys = self.run_scene("cylinder", *self.HALF, *basis("quadratic_bspline"), "--set", "body[0].particles_per_cell=2",
+                                 "--set", 'body[0].boundary="cut2x2"')
+        self.assertEqual(by_name["state_hash"], by_keys["state_hash"])
+        for name, most in (("e_rr", 1.1 * 9.5e-3), ("e_tt", 1.1 * 8.6e-3)):  # of the independent prototype
+            self.assertLess(by_name["errors"][name], most)
+        whole = self.run_scene("cylinder-accurate", *self.HALF, "--set", 'body[0].boundary="keep"')
+        self.assertNotEqual(by_name["particles"], whole["particles"])
+
+    def test_a_slab_in_space_has_the_errors_of_the_plane(self):
+        plane = self.run_scene("cylinder-accurate", *self.HALF)["errors"]
+        slab = ((SCENES / "cylinder-accurate.toml").read_text().replace("dimension = 2", "dimension = 3")
+                .replace("lower = [0.0, 0.0]\nupper = [6.0, 6.0]", "lower = [0.0, 0.0, 0.0]\nupper = [6.0, 6.0, 0.5]")
+                .replace('y_min = "roller"', 'y_min = "roller"\nz_min = "roller"\nz_max = "roller"')
+                .replace("disc = { center = [0.0, 0.0], radius", "cylinder = { axis = 'z', center = [0.0, 0.0, 0.0], radius"))
+        space = self.run_scene(self.write(slab), *self.HALF)["errors"]
+        for name in ("e_rr", "e_tt"):  # shares of boxes are sampled at fewer lines in space
+            self.assertAlmostEqual(space[name] / plane[name], 1, delta=1e-3, msg=name)
+
+    def test_where_it_cannot_be(self):
+        for scene, arguments, word in (("cylinder-polar", (), "uniform grids"), ("cylinder", ("--set", "precision=float"), "double")):
+            done = vsb("check", SCENES / f"{scene}.toml", "--set", "setting=accurate", *arguments)
+            self.assertEqual(done.returncode, 2)
+            for part in ("method.basis", "accurate", word):
+                self.assertIn(part, done.stderr)
+        done = vsb("check", SCENES / "cylinder.toml", "--set", "setting=acurate")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("did you mean 'accurate'", done.stderr)
+
+
 class Keys(ProgramTest):
     def check(self, *arguments, scene="cylinder"):
         return vsb("check", SCENES / f"{scene}.toml", *arguments)
