@@ -132,8 +132,12 @@ def draw_fields(frame):
     if frame.dimension == 3:  # the layer of particles nearest to the middle of the thinnest direction
         thin = int(np.argmin(np.ptp(frame.position, axis=0)))
         z = frame.position[:, thin]
+        sizes = particle_sizes(frame)
+        volume = frame.fields["volume"]
+        whole = np.flatnonzero(volume > 0.99 * volume.max())  # what a surface cuts has a place of its own
         middle = 0.5 * (z.min() + z.max())
-        keep = np.abs(z - z[np.argmin(np.abs(z - middle))]) < 1e-6 * max(np.ptp(z), 1e-300) + 1e-12
+        level = z[whole[np.argmin(np.abs(z[whole] - middle))]]
+        keep = np.abs(z - level) < 0.499 * sizes[:, thin]
         axes = [i for i in range(3) if i != thin]
         names = "".join("xyz"[i] for i in axes)
     quantities = compared_quantities(frame)

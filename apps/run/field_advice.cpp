@@ -125,6 +125,15 @@ std::vector<std::string> field_advice(const Scene& scene, const PlacedParticles&
   const auto box = bounding_box(scene.grid, scene.dimension);
   const auto spurious = spurious_traction(scene, placed);
   for (const auto& traction : scene.tractions) {
+    const bool acts = std::any_of(placed.position.begin(), placed.position.end(), [&](const Point& x) {
+      return full_stress(scene, traction, x) != Stress6{};
+    });
+    if (traction.all_nodes && !acts)
+      advice.push_back(
+          fmt::format("traction '{}' has no stress at any particle, so it loads nothing: check its field",
+                      traction.name));
+  }
+  for (const auto& traction : scene.tractions) {
     if (traction.name != spurious.traction) continue;
     const double most = largest_stress(traction.field, box.lower, box.upper);
     if (spurious.size > 0.1 * most)

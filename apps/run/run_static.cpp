@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -29,6 +30,13 @@ void refuse_moving_scenes(const Scene& scene) {
     if (body.velocity.value != Point{} || body.velocity.gradient != std::array<Point, 3>{})
       refuse(
           fmt::format("body '{}' has an initial velocity, of which a static state knows nothing", body.name));
+}
+
+double largest_displacement(const Snapshot& s) {
+  double largest = 0;
+  for (size_t i = 0; i < s.position.size(); ++i)
+    largest = std::max(largest, std::abs(s.position[i] - s.initial_position[i]));
+  return largest;
 }
 
 }  // namespace
@@ -81,6 +89,15 @@ RunResult run_static(const Scene& scene, const RunOptions& options) {
         "vsb: warning: strains up to {:.2g}: --static is for small strains, an explicit run follows large "
         "ones\n",
         solution.largest_strain);
+
+  if (const double moved = largest_displacement(simulation->snapshot()),
+      h = shortest_edge(scene.grid, scene.dimension);
+      moved > 0.1 * h && !options.progress_only)
+    fmt::print(
+        stderr,
+        "vsb: warning: a particle is displaced by {:.3g} m, {:.2g} of a cell: too few particles hold their "
+        "cells' shape (2 per cell and direction at least), or the load is too large for --static\n",
+        moved, moved / h);
 
   results.begin(-1);
   write_frames(results, scene, *simulation);

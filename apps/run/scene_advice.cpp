@@ -54,6 +54,9 @@ double fewest_per_cell(const Scene& scene, const BodySpec& body) {
   return fewest;
 }
 
+/// The force ratio below which runs with B-splines hardly get.
+constexpr double least_spline_ratio = 3e-6;
+
 /// Of kappa with the re-map of the velocity (MUSL), however little of a cell is filled.
 double largest_stable_kappa(const Scene& scene) {
   return scene.method.basis == BasisKind::quadratic_bspline ? 1.5 : 1.3;
@@ -90,6 +93,13 @@ std::vector<std::string> scene_advice(const Scene& scene) {
                       "stretches, and motions "
                       "that such particles do not resist remain; give particles_per_cell = 2 or more",
                       body.name, n));
+  if (scene.method.basis == BasisKind::quadratic_bspline && scene.time.until_static &&
+      scene.time.until_static->force_ratio < least_spline_ratio)
+    advice.push_back(fmt::format(
+        "time.until_static.force_ratio = {:g}: with B-splines, nodes that hold on to a corner of one "
+        "particle "
+        "hardly come to rest, so the run may never become static; {:g}, stronger damping (0.4), or --static",
+        scene.time.until_static->force_ratio, 2e-5));
   if (scene.time.kappa > largest_stable_kappa(scene))
     advice.push_back(
         fmt::format("time.kappa = {:.4g} is above the stability limit of about {:g}; give a smaller one",
