@@ -86,18 +86,20 @@ struct VoidFilterEffect {
   int dropped_nodes = 0;  ///< nodes at which a traction would act without the filter
 };
 
-/// The effect of the filter on a boundary of `boundary_node_count` nodes that is up to date. Waits for the
-/// device.
+/// The effect of the filter on a boundary of `boundary_node_count` nodes that is up to date; `conservative`
+/// as for mark_boundary_nodes. Waits for the device.
 template <class Exec, class Basis, int Dim, class Real, class Device>
 VoidFilterEffect void_filter_effect(const Exec& exec, const Particles<Dim, Real, Device>& particles,
                                     const CellBits<Device>& bits, const Basis& basis,
-                                    const BoundaryNodes<Device>& tractions, int boundary_node_count) {
+                                    const BoundaryNodes<Device>& tractions, int boundary_node_count,
+                                    TractionMask conservative = 0) {
   auto unfiltered = allocate_cell_bits<Device>(basis.grid);
   unfiltered.underfilled = bits.underfilled;
   const BoundaryNodes<Device> boundary("vsb::unfiltered_boundary_nodes", tractions.extent(0));
   VoidFilterEffect effect;
   effect.dropped_nodes =
-      mark_boundary_nodes(exec, particles, unfiltered, basis, tractions, boundary) - boundary_node_count;
+      mark_boundary_nodes(exec, particles, unfiltered, basis, tractions, boundary, conservative) -
+      boundary_node_count;
   const BitRows<Dim> tiling(basis.grid);
   Kokkos::parallel_reduce(
       "vsb::count_false_voids", Kokkos::RangePolicy<Exec>(exec, 0, tiling.cell_row_count() * tiling.words),

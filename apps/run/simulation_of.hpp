@@ -65,8 +65,8 @@ class SimulationOf final : public Simulation {
   VoidFilterReport void_filter() const override {
     const auto& o = state_.occupancy;
     if (!scene_.method.void_filter) return {};
-    const auto effect =
-        void_filter_effect(exec_, state_.particles, o.cells, basis_, o.tractions, o.boundary_node_count);
+    const auto effect = void_filter_effect(exec_, state_.particles, o.cells, basis_, o.tractions,
+                                           o.boundary_node_count, o.conservative);
     return {effect.false_voids, effect.dropped_nodes};
   }
   std::vector<std::string> advice() const override { return field_advice(scene_, placed_, cells_inside()); }
