@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 
 #include "run/interrupt.hpp"
@@ -90,6 +91,7 @@ RunResult run(const Scene& scene, const RunOptions& options) {
                simulation->particle_count(), simulation->boundary_nodes(), scene.time.dt,
                scene.time.until_static ? "at most" : "exactly", scene.time.steps, options.directory);
     if (resumed_step >= 0) fmt::print("resumed at step {}\n", resumed_step);
+    std::fflush(stdout);  // who reads a pipe sees that the run has begun
   }
   if (resumed_step < 0) write_frames(results, scene, *simulation);
 

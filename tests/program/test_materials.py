@@ -139,13 +139,13 @@ class VoidFilter(ProgramTest):
 
 
 class Resuming(ProgramTest):
-    def resume(self, scene, *arguments):
+    def resume(self, scene, *arguments, pause=0.7):
         """Runs, interrupts, resumes: the same bits as of a run in one go."""
         out = self.folder / "parts"
         run = subprocess.Popen([PROGRAM, "run", str(SCENES / f"{scene}.toml"), "--out", str(out), *arguments],
                                stdout=subprocess.PIPE, text=True)
         run.stdout.readline()  # the head line: the run has begun
-        time.sleep(0.7)
+        time.sleep(pause)
         run.send_signal(signal.SIGINT)
         output, _ = run.communicate(timeout=60)
         step = re.search(r"interrupted at step (\d+)", output)
@@ -164,7 +164,7 @@ class Resuming(ProgramTest):
         step, whole = self.resume("cylinder-voids", *GAPS, "--set", "faces.x_min=open", "--set", "faces.y_min=open", "--set",
                                   "grid.upper=[12.0,12.0]", "--set", "grid.lower=[-2.0,-2.0]", "--set", "body[0].velocity=[0.4,0.3]",
                                   "--set", "method.damping=0", "--set", "time.until_static.max_steps=12000",
-                                  "--set", "time.until_static.energy_ratio=1e-30")
+                                  "--set", "time.until_static.energy_ratio=1e-30", pause=0.08)
         self.assertGreater(whole["void_filter"]["false_voids"], 0)
 
 
