@@ -98,6 +98,17 @@ class Accurate(ProgramTest):
         self.assertIn("did you mean 'accurate'", done.stderr)
 
 
+class Carried(ProgramTest):
+    def test_a_comparison_about_a_moved_axis(self):
+        def e_u(speed, moved, *more):
+            return self.run_scene("cylinder-carried", "--set", "time.steps=1", "--set", f"body[0].velocity=[{speed},0.0]",
+                                  "--set", f"compare.moved=[{moved},0.0]", *more)["errors"]["e_u"]
+        at_rest = e_u(0.0, 0.0)
+        self.assertAlmostEqual(e_u(0.625, 0.625 * 2e-4) / at_rest, 1, delta=1e-6)  # dt = 2e-4 s
+        self.assertGreater(e_u(0.625, 0.0), 1.1 * at_rest)
+        self.assertGreater(e_u(0.0, 0.0, "--set", "compare.center=[0.3,0.0]"), 1.001 * at_rest)
+
+
 class Keys(ProgramTest):
     def check(self, *arguments, scene="cylinder"):
         return vsb("check", SCENES / f"{scene}.toml", *arguments)

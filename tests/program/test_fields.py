@@ -318,6 +318,18 @@ class Warnings(FieldTest):
         self.assertIn("time.kappa = 1.4 is above the stability limit of about 1.3", self.warnings(scene, "--set", "time.kappa=1.4"))
         self.assertEqual(self.warnings(scene, "--set", "time.kappa=1.3"), "")
 
+    def test_a_field_that_is_zero_at_every_particle(self):
+        blend = ("radial_blend = { center = [0.0, 0.0], inner = { radius = 0.2, pressure = 4e4 }, "
+                 "outer = { radius = %s, pressure = 0.0 } }\nnodes = 'all'")
+        self.assertIn("loads nothing", self.warnings(self.disc(blend % 0.9, RING)))  # within the hole of radius 1
+        self.assertNotIn("loads nothing", self.warnings(self.disc(blend % 2.0, RING)))
+
+    def test_a_criterion_that_splines_do_not_reach(self):
+        for setting, ratio, told in (("accurate", 1e-6, True), ("accurate", 2e-5, False), ("paper", 1e-6, False)):
+            text = self.warnings(SCENES / "cylinder.toml", "--set", f"setting={setting}", "--set",
+                                 f"time.until_static.force_ratio={ratio}")
+            self.assertEqual("hardly come to rest" in text, told, f"{setting} {ratio}")
+
     def test_the_scenes_of_the_repository(self):
         """Only what is meant to be wrong is warned of."""
         for path in sorted(SCENES.glob("*.toml")):
