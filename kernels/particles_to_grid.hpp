@@ -18,6 +18,45 @@ namespace vsb {
 
 namespace kernel {
 
+/// What one particle gives to its support nodes, into sink(a, node, column) with the columns of Nodes::sums.
+template <class Shape, class Field, class Boundary, int Dim, class Real, class Sink>
+KOKKOS_FORCEINLINE_FUNCTION void add_particle(const Shape& shape, const Vector<Dim, Real>& x,
+                                              const Vector<Dim, Real>& v,
+                                              const SymmetricTensor<Dim, Real>& sigma, Real m, Real V,
+                                              const Field& virtual_stress, const Boundary& boundary,
+                                              const Vector<Dim, Real>& gravity, const Sink& sink) {
+  // Adds what node a gets: `stress` is sigma - chi sbar, `body_force` is m b + chi V fbar.
+  const auto add = [&](int a, const auto& stress, const auto& body_force) {
+    const auto f = shape.N[a] * body_force - V * (stress * shape.dN[a]);
+    const Real Nm = shape.N[a] * m;
+    sink(a, shape.node[a], 0) += Nm;
+    for (int i = 0; i < Dim; ++i) sink(a, shape.node[a], 1 + i) += Nm * v[i];
+    for (int i = 0; i < Dim; ++i) sink(a, shape.node[a], 1 + Dim + i) += f[i];
+  };
+  if constexpr (Field::loaded) {
+    // Most particles have no node of N1 and take the short way out.
+    TractionMask any = 0;
+    for (int a = 0; a < Shape::support; ++a) any |= boundary(shape.node[a]);
+    if (any != 0) {
+      const TractionMask acting = virtual_stress.acting_at(x);
+      auto stress = sigma;
+      auto body_force = m * gravity;
+      TractionMask chi = 0;
+      for (int a = 0; a < Shape::support; ++a) {
+        if ((boundary(shape.node[a]) & acting) != chi) {
+          chi = boundary(shape.node[a]) & acting;
+          const auto bar = virtual_stress.at(x, chi);
+          stress = sigma - bar.stress;
+          body_force = m * gravity + V * bar.divergence;
+        }
+        add(a, stress, body_force);
+      }
+      return;
+    }
+  }
+  for (int a = 0; a < Shape::support; ++a) add(a, sigma, m * gravity);
+}
+
 template <class Basis, class Field, int Dim, class Real, class Device>
 struct ParticlesToGrid {
   static constexpr int columns = Nodes<Dim, Real, Device>::sum_columns;
@@ -30,41 +69,8 @@ struct ParticlesToGrid {
   template <class Sink>
   KOKKOS_FUNCTION void operator()(int p, const Sink& sink) const {
     const auto x = particles.position_of(p);
-    const auto v = particles.velocity_of(p);
-    const auto sigma = particles.stress_of(p);
-    const Real m = particles.mass(p), V = particles.volume(p);
-    const auto shape = basis.shape(x);
-
-    // Adds what node a gets: `stress` is sigma - chi sbar, `body_force` is m b + chi V fbar.
-    const auto add = [&](int a, const auto& stress, const auto& body_force) {
-      const auto f = shape.N[a] * body_force - V * (stress * shape.dN[a]);
-      const Real Nm = shape.N[a] * m;
-      sink(a, shape.node[a], 0) += Nm;
-      for (int i = 0; i < Dim; ++i) sink(a, shape.node[a], 1 + i) += Nm * v[i];
-      for (int i = 0; i < Dim; ++i) sink(a, shape.node[a], 1 + Dim + i) += f[i];
-    };
-    if constexpr (Field::loaded) {
-      // Most particles have no node of N1 and take the short way out.
-      TractionMask any = 0;
-      for (int a = 0; a < Basis::support; ++a) any |= boundary(shape.node[a]);
-      if (any != 0) {
-        const TractionMask acting = virtual_stress.acting_at(x);
-        auto stress = sigma;
-        auto body_force = m * gravity;
-        TractionMask chi = 0;
-        for (int a = 0; a < Basis::support; ++a) {
-          if ((boundary(shape.node[a]) & acting) != chi) {
-            chi = boundary(shape.node[a]) & acting;
-            const auto bar = virtual_stress.at(x, chi);
-            stress = sigma - bar.stress;
-            body_force = m * gravity + V * bar.divergence;
-          }
-          add(a, stress, body_force);
-        }
-        return;
-      }
-    }
-    for (int a = 0; a < Basis::support; ++a) add(a, sigma, m * gravity);
+    add_particle(basis.shape(x), x, particles.velocity_of(p), particles.stress_of(p), particles.mass(p),
+                 particles.volume(p), virtual_stress, boundary, gravity, sink);
   }
 };
 

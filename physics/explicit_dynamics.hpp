@@ -3,7 +3,7 @@
 /// Explicit time integration at one node: local damping, and the time step that stability allows.
 #pragma once
 
-#include <vsb/views/tensor.hpp>
+#include <vsb/views/pack.hpp>
 
 namespace vsb {
 
@@ -13,7 +13,8 @@ namespace vsb {
 template <class T>
 KOKKOS_INLINE_FUNCTION T cundall_damped(T force, T velocity, T alpha) {
   const T drag = alpha * math::abs(force);
-  return velocity > T(0) ? force - drag : velocity < T(0) ? force + drag : force;
+  return math::select(velocity > T(0), T(force - drag),
+                      math::select(velocity < T(0), T(force + drag), force));
 }
 
 /// dt = kappa h / sqrt(M / rho), Eq. (29): the share kappa of the time a compression wave takes to cross a

@@ -4,8 +4,8 @@
 /// normal n is replaced by any field with sbar . n = t there (Eq. 14); a pressure p, positive in compression,
 /// is sbar = -p I.
 ///
-/// What a kernel asks of a field: `loaded` (whether particles have anything to add), `cell_quadrature`
-/// (whether whole cells have), acting_at(x), the tractions that may act on a particle at x, and at(x, mask),
+/// What a kernel asks of a field: `loaded` (whether particles have anything to add), `uniform` (whether it is
+/// the same everywhere), `cell_quadrature` (whether whole cells have anything to add), acting_at(x), the tractions that may act on a particle at x, and at(x, mask),
 /// the sum over the tractions in the mask of their fields at x. A kernel calls it where a node's mask differs
 /// from that of the node before it, so that a field that differs from surface to surface switches node by
 /// node.
@@ -29,7 +29,7 @@ struct VirtualStressValue {
 
 /// What most fields have in common: they act on particles, and on all of them.
 struct ActsOnParticles {
-  static constexpr bool loaded = true, cell_quadrature = false;
+  static constexpr bool loaded = true, uniform = false, cell_quadrature = false;
   template <class Position>
   KOKKOS_FUNCTION TractionMask acting_at(const Position&) const {
     return ~TractionMask(0);
@@ -54,6 +54,7 @@ KOKKOS_INLINE_FUNCTION SymmetricTensor<Dim, T> pressure_stress(T p) {
 /// One uniform tensor per traction; tractions add up where their surfaces overlap.
 template <int Dim, class Real>
 struct UniformVirtualStress : ActsOnParticles {
+  static constexpr bool uniform = true;
   static constexpr int capacity = 8;
   SymmetricTensor<Dim, Real> stress[capacity];  ///< sbar of traction k at this time, Pa, tension positive
   int count = 0;

@@ -1,0 +1,373 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Packs particles by cell (views/cell_lanes.hpp), packs them anew when they no longer fit, and unpacks them.
+///
+/// Within a cell, particles lie by number at first, and later in the order in which they came; both are the
+/// same whatever ran in parallel.
+#pragma once
+
+#include <vsb/kernels/locate_particles.hpp>
+#include <vsb/physics/uniform_grid.hpp>
+#include <vsb/physics/walls.hpp>
+#include <vsb/views/cell_lanes.hpp>
+
+namespace vsb {
+
+/// The box that holds cells lowest, ..., highest with a margin of void cells, so that the cells around them
+/// are known (Algorithm 1) and particles can move a while. It may reach over the faces of the grid: groups
+/// begin at the lowest cell along x.
+template <int Dim, class Real>
+CellBox<Dim> box_around(const Vector<Dim, int>& lowest, const Vector<Dim, int>& highest) {
+  constexpr int width = Lanes<Real>::width;
+  CellBox<Dim> box;
+  for (int i = 0; i < Dim; ++i) {
+    const int margin = i == 0 ? std::max(width, 2) : 2;
+    box.first[i] = lowest[i] - margin;
+    box.cells[i] = highest[i] - lowest[i] + 1 + 2 * margin;
+    if (i == 0) box.cells[i] = (box.cells[i] + width - 1) / width * width;
+  }
+  return box;
+}
+
+namespace kernel {
+
+/// The bin of a particle is its cell in a box.
+template <int Dim, class Real>
+struct BoxBasis {
+  UniformGrid<Dim, Real> grid;
+  CellBox<Dim> box;
+  KOKKOS_FUNCTION bool contains(const Vector<Dim, Real>& x) const { return grid.contains(x); }
+  KOKKOS_FUNCTION int bin(const Vector<Dim, Real>& x) const { return bin_of_cell(grid.cell_containing(x)); }
+  KOKKOS_FUNCTION int bin_of_cell(const Vector<Dim, int>& cell) const {
+    int index = 0;
+    for (int i = Dim - 1; i >= 0; --i) index = index * box.cells[i] + cell[i] - box.first[i];
+    return index;
+  }
+  int bin_count() const {
+    int n = 1;
+    for (int i = 0; i < Dim; ++i) n *= box.cells[i];
+    return n;
+  }
+};
+
+/// The lowest and, with the other sign, the highest cell along axis i of the particles in the grid.
+template <int Dim, class Real, class Device>
+struct CellRange {
+  Particles<Dim, Real, Device> particles;
+  UniformGrid<Dim, Real> grid;
+  int axis, sign;
+  KOKKOS_FUNCTION void operator()(int p, int& minimum) const {
+    const auto x = particles.position_of(p);
+    if (grid.contains(x)) minimum = math::min(minimum, sign * grid.cell_containing(x)[axis]);
+  }
+};
+
+/// Most particles of a cell in a group's lanes.
+template <class Counts>
+KOKKOS_INLINE_FUNCTION int group_slots(const Counts& count, int group, int width) {
+  int most = 0;
+  for (int l = 0; l < width; ++l) most = math::max(most, static_cast<int>(count(group * width + l)));
+  return most;
+}
+
+template <int Dim, class Real, class Device>
+struct CountGroups {
+  typename CellLanes<Dim, Real, Device>::Ints count;
+  int slack;
+  KOKKOS_FUNCTION void operator()(int group, int& groups, int& slots) const {
+    const int most = group_slots(count, group, Lanes<Real>::width);
+    if (most == 0) return;
+    ++groups;
+    slots += most + slack;
+  }
+};
+
+/// Numbers groups and nodes, one after the other; a single work item.
+template <int Dim, class Real, class Device>
+struct NumberGroups {
+  CellLanes<Dim, Real, Device> lanes;
+  typename CellLanes<Dim, Real, Device>::Ints count;
+  int slack;
+
+  KOKKOS_FUNCTION void operator()(int, int& nodes) const {
+    constexpr int width = Lanes<Real>::width, corner_rows = LaneGroup<Dim>::corner_rows;
+    const int per_row = lanes.groups_per_row(), rows = lanes.row_count();
+    int group = 0, slot = 0;
+    for (int row = 0; row < rows; ++row) {
+      if (row % lanes.rows_per_layer() == 0) lanes.layer_first(row / lanes.rows_per_layer()) = group;
+      for (int x = 0; x < per_row; ++x) {
+        const int place = row * per_row + x, most = group_slots(count, place, width);
+        lanes.group_at(place) = most > 0 ? group : -1;
+        if (most == 0) continue;
+        auto& g = lanes.groups(group++);
+        g = {};
+        g.first = slot;
+        g.slots = most;
+        g.capacity = most + slack;
+        g.x = x;
+        g.row = row;
+        slot += g.capacity;
+        for (int c = 0; c < corner_rows; ++c) {
+          const int chunk = lanes.node_row(row, c) * (per_row + 1) + x;
+          lanes.chunk_at(chunk) = lanes.chunk_at(chunk + 1) = 0;
+        }
+      }
+    }
+    lanes.layer_first(lanes.layers()) = group;
+    int chunk = 0;
+    const int chunks_per_plane = lanes.node_rows_per_plane() * (per_row + 1);
+    for (int n = 0; n < static_cast<int>(lanes.chunk_at.extent(0)); ++n) {
+      if (n % chunks_per_plane == 0) lanes.plane_first(n / chunks_per_plane) = chunk * width;
+      if (lanes.chunk_at(n) >= 0) lanes.chunk_at(n) = chunk++;
+    }
+    lanes.plane_first(static_cast<int>(lanes.chunk_at.extent(0)) / chunks_per_plane) = chunk * width;
+    for (int g = 0; g < group; ++g)
+      for (int c = 0; c < corner_rows; ++c) {
+        auto& of = lanes.groups(g);
+        of.node[c] = lanes.chunk_at(lanes.node_row(of.row, c) * (per_row + 1) + of.x) * width;
+      }
+    nodes = chunk * width;
+  }
+};
+
+/// One group, from particles sorted by cell.
+template <int Dim, class Real, class Device>
+struct PackGroup {
+  CellLanes<Dim, Real, Device> lanes;
+  Particles<Dim, Real, Device> particles;
+  ParticleBins<Device> bins;
+  UniformGrid<Dim, Real> grid;
+
+  KOKKOS_FUNCTION void operator()(int g) const {
+    constexpr int width = Lanes<Real>::width;
+    const auto& group = lanes.groups(g);
+    const int first_bin = (group.row * lanes.groups_per_row() + group.x) * width;
+    for (int l = 0; l < width; ++l) {
+      const int begin = bins.offset(first_bin + l), count = bins.offset(first_bin + l + 1) - begin;
+      for (int s = 0; s < group.capacity; ++s) {
+        const size_t e = static_cast<size_t>(group.first + s) * width + static_cast<size_t>(l);
+        lanes.clear(e);
+        if (s < count) pack(bins.order(begin + s), e, lanes.cell(group, l));
+      }
+    }
+  }
+  KOKKOS_FUNCTION void pack(int p, size_t e, const Vector<Dim, int>& cell) const {
+    const auto q = grid.in_cells(particles.position_of(p));
+    for (int i = 0; i < Dim; ++i) {
+      *lanes.at(lanes.xi_column + i, e) = q[i] - static_cast<Real>(cell[i]);
+      *lanes.at(lanes.velocity_column + i, e) = particles.velocity(p, i);
+    }
+    *lanes.at(lanes.mass_column, e) = particles.mass(p);
+    *lanes.at(lanes.volume_column, e) = particles.volume(p);
+    for (int c = 0; c < lanes.stress_size; ++c)
+      *lanes.at(lanes.stress_column + c, e) = particles.cauchy_stress(p, c);
+    for (int c = 0; c < lanes.state_size; ++c)
+      *lanes.at(lanes.state_column + c, e) = particles.material_state(p, c);
+    lanes.id(e) = p;
+  }
+};
+
+template <int Dim, class Real, class Device>
+struct UnpackGroup {
+  CellLanes<Dim, Real, Device> lanes;
+  Particles<Dim, Real, Device> particles;
+  UniformGrid<Dim, Real> grid;
+
+  KOKKOS_FUNCTION void operator()(int g) const {
+    constexpr int width = Lanes<Real>::width;
+    const auto& group = lanes.groups(g);
+    for (int s = 0; s < group.slots; ++s)
+      for (int l = 0; l < width; ++l) {
+        const size_t e = static_cast<size_t>(group.first + s) * width + static_cast<size_t>(l);
+        const int p = lanes.id(e);
+        if (p < 0) continue;
+        Vector<Dim, Real> xi;
+        for (int i = 0; i < Dim; ++i) xi[i] = *lanes.at(lanes.xi_column + i, e);
+        const auto x = grid.map(lanes.cell(group, l), xi).x;
+        for (int i = 0; i < Dim; ++i) {
+          particles.position(p, i) = x[i];
+          particles.velocity(p, i) = *lanes.at(lanes.velocity_column + i, e);
+        }
+        particles.mass(p) = *lanes.at(lanes.mass_column, e);
+        particles.volume(p) = *lanes.at(lanes.volume_column, e);
+        for (int c = 0; c < lanes.stress_size; ++c)
+          particles.cauchy_stress(p, c) = *lanes.at(lanes.stress_column + c, e);
+        for (int c = 0; c < lanes.state_size; ++c)
+          particles.material_state(p, c) = *lanes.at(lanes.state_column + c, e);
+      }
+  }
+};
+
+/// The components prescribed at a node, from the faces of the grid on which it lies; one chunk of nodes.
+template <int Dim, class Real, class Device>
+struct FixLaneNodes {
+  CellLanes<Dim, Real, Device> lanes;
+  LaneNodes<Dim, Real, Device> nodes;
+  Vector<Dim, int> grid_cells;
+  Walls<Dim> walls;
+
+  KOKKOS_FUNCTION void operator()(int place) const {
+    constexpr int width = Lanes<Real>::width;
+    const int chunk = lanes.chunk_at(place);
+    if (chunk < 0) return;
+    const int per_row = lanes.groups_per_row() + 1, row = place / per_row;
+    Vector<Dim, int> ijk;
+    if constexpr (Dim == 2) ijk[1] = lanes.box.first[1] + row;
+    if constexpr (Dim == 3) {
+      ijk[1] = lanes.box.first[1] + row % lanes.node_rows_per_plane();
+      ijk[2] = lanes.box.first[2] + row / lanes.node_rows_per_plane();
+    }
+    for (int l = 0; l < width; ++l) {
+      ijk[0] = lanes.box.first[0] + place % per_row * width + l;
+      ComponentMask fixed = 0;
+      for (int i = 0; i < Dim; ++i) {
+        if (ijk[i] == 0) fixed = static_cast<ComponentMask>(fixed | walls.fixed[i][0]);
+        if (ijk[i] == grid_cells[i]) fixed = static_cast<ComponentMask>(fixed | walls.fixed[i][1]);
+      }
+      nodes.fixed(static_cast<size_t>(chunk * width + l)) = fixed;
+    }
+  }
+};
+
+}  // namespace kernel
+
+/// What the cell lanes of a body need beside the particles.
+template <int Dim, class Real, class Device>
+struct LaneMemory {
+  CellLanes<Dim, Real, Device> lanes;
+  LaneNodes<Dim, Real, Device> nodes;
+  Leavers<Dim, Real, Device> leavers;
+  UniformGrid<Dim, Real> grid;
+  Walls<Dim> walls;
+  int slack = 1;  ///< slots that a group has to spare
+};
+
+namespace detail {
+
+template <int Dim, class Real, class Device>
+auto allocate_columns(int slots, int columns) {
+  using Lanes_ = CellLanes<Dim, Real, Device>;
+  return typename Lanes_::Columns(Kokkos::view_alloc("vsb::cell_lanes", Kokkos::WithoutInitializing),
+                                  static_cast<size_t>(padded_rows<Real>(slots * Lanes_::width)),
+                                  static_cast<size_t>(columns));
+}
+
+/// Groups, nodes and lists for a box and the number of particles in each of its cells; the columns and
+/// numbers of the particles are left to the caller.
+template <class Exec, int Dim, class Real, class Device>
+void number_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const CellBox<Dim>& box,
+                  const typename CellLanes<Dim, Real, Device>::Ints& count) {
+  using Cells = CellLanes<Dim, Real, Device>;
+  using Ints = typename Cells::Ints;
+  const Kokkos::RangePolicy<Exec> once(exec, 0, 1);
+  auto& lanes = m.lanes;
+  lanes.box = box;
+  const int per_row = lanes.groups_per_row(), places = lanes.row_count() * per_row,
+            layers = lanes.layers(), planes = Dim == 1 ? 1 : layers + 1,
+            chunks = planes * lanes.node_rows_per_plane() * (per_row + 1);
+  struct {
+    int groups, slots;
+  } total{};
+  Kokkos::parallel_reduce("vsb::count_groups", Kokkos::RangePolicy<Exec>(exec, 0, places),
+                          kernel::CountGroups<Dim, Real, Device>{count, m.slack}, total.groups, total.slots);
+  exec.fence();
+  const auto ints = [](const std::string& name, int n) { return Ints(name, static_cast<size_t>(n)); };
+  lanes.group_count = total.groups;
+  lanes.slot_count = total.slots;
+  lanes.groups = decltype(lanes.groups)("vsb::lane_groups", static_cast<size_t>(total.groups));
+  lanes.layer_first = ints("vsb::layer_first", layers + 1);
+  lanes.plane_first = ints("vsb::plane_first", layers + 2);
+  lanes.group_at = ints("vsb::group_at", places);
+  lanes.chunk_at = ints("vsb::chunk_at", chunks);
+  Kokkos::deep_copy(exec, lanes.chunk_at, -1);
+  int node_count = 0;
+  Kokkos::parallel_reduce("vsb::number_groups", once,
+                          kernel::NumberGroups<Dim, Real, Device>{lanes, count, m.slack}, node_count);
+  exec.fence();
+  lanes.node_count = node_count;
+  if (static_cast<int>(m.nodes.data.extent(0)) < node_count) {
+    m.nodes.data = decltype(m.nodes.data)(
+        "vsb::lane_nodes", static_cast<size_t>(padded_rows<Real>(node_count + node_count / 16)),
+        static_cast<size_t>(m.nodes.column_count));
+    m.nodes.fixed = decltype(m.nodes.fixed)("vsb::lane_nodes_fixed", m.nodes.data.extent(0));
+  } else {
+    Kokkos::deep_copy(exec, m.nodes.data, Real(0));
+  }
+  Kokkos::parallel_for(
+      "vsb::fix_lane_nodes", Kokkos::RangePolicy<Exec>(exec, 0, chunks),
+      kernel::FixLaneNodes<Dim, Real, Device>{lanes, m.nodes, m.grid.cells, m.walls});
+}
+
+/// Lists with room for all particles of their layers; memory that nobody writes to is not taken.
+template <class Exec, int Dim, class Real, class Device>
+void allocate_leavers(const Exec& exec, LaneMemory<Dim, Real, Device>& m) {
+  const auto& lanes = m.lanes;
+  const auto entries = static_cast<size_t>(lanes.slot_count * lanes.width);
+  auto& l = m.leavers;
+  if (l.data.extent(0) < entries || l.data.extent(1) != static_cast<size_t>(lanes.columns())) {
+    l.data = decltype(l.data)(Kokkos::view_alloc("vsb::leavers", Kokkos::WithoutInitializing), entries,
+                              static_cast<size_t>(lanes.columns()));
+    l.head = decltype(l.head)(Kokkos::view_alloc("vsb::leaver_heads", Kokkos::WithoutInitializing), entries);
+  }
+  l.count = decltype(l.count)("vsb::leaver_count", static_cast<size_t>(lanes.layers()));
+  l.first = decltype(l.first)("vsb::leaver_first", static_cast<size_t>(lanes.layers()));
+  const auto first = l.first;
+  Kokkos::parallel_for(
+      "vsb::first_leavers", Kokkos::RangePolicy<Exec>(exec, 0, lanes.layers()), KOKKOS_LAMBDA(int k) {
+        const int g = lanes.layer_first(k);
+        first(k) = g < lanes.group_count ? lanes.groups(g).first * lanes.width : 0;
+      });
+}
+
+}  // namespace detail
+
+/// Packs particles that all lie in the grid. Returns -1, or the lowest number of one that does not.
+template <class Exec, int Dim, class Real, class Device>
+int pack_particles(const Exec& exec, const Particles<Dim, Real, Device>& particles,
+                   LaneMemory<Dim, Real, Device>& m) {
+  using Cells = CellLanes<Dim, Real, Device>;
+  const int n = particles.count();
+  Vector<Dim, int> lowest, highest;
+  for (int i = 0; i < Dim; ++i)
+    for (const int sign : {1, -1}) {
+      int found = 0;
+      Kokkos::parallel_reduce("vsb::cell_range", Kokkos::RangePolicy<Exec>(exec, 0, n),
+                              kernel::CellRange<Dim, Real, Device>{particles, m.grid, i, sign},
+                              Kokkos::Min<int>(found));
+      exec.fence();
+      // A reduction over nothing, or over particles outside alone, leaves the largest number there is.
+      const int cell = sign * math::min(found, m.grid.cells[i] - 1);
+      (sign > 0 ? lowest : highest)[i] = cell;
+    }
+  const kernel::BoxBasis<Dim, Real> basis{m.grid, box_around<Dim, Real>(lowest, highest)};
+  auto bins = allocate_bins<Device>(n, basis.bin_count());
+  const auto where = locate_particles(exec, particles, bins, basis);
+  if (where.lost >= 0) return where.lost;
+  sort_by_bin(exec, bins);
+  typename Cells::Ints count("vsb::particles_of_cell", bins.slot.extent(0));
+  Kokkos::parallel_for(
+      "vsb::particles_of_cell", Kokkos::RangePolicy<Exec>(exec, 0, static_cast<int>(count.extent(0))),
+      KOKKOS_LAMBDA(int b) { count(b) = bins.offset(b + 1) - bins.offset(b); });
+  detail::number_lanes(exec, m, basis.box, count);
+  auto& lanes = m.lanes;
+  lanes.particle_count = n;
+  const int columns = lanes.columns();
+  lanes.data = detail::allocate_columns<Dim, Real, Device>(lanes.slot_count, columns);
+  lanes.id = typename Cells::Ints(Kokkos::view_alloc("vsb::lane_ids", Kokkos::WithoutInitializing),
+                                  lanes.data.extent(0));
+  Kokkos::parallel_for("vsb::pack_particles", Kokkos::RangePolicy<Exec>(exec, 0, lanes.group_count),
+                       kernel::PackGroup<Dim, Real, Device>{lanes, particles, bins, m.grid});
+  detail::allocate_leavers(exec, m);
+  exec.fence();
+  return -1;
+}
+
+/// Writes the particles back, in the order of their numbers.
+template <class Exec, int Dim, class Real, class Device>
+void unpack_particles(const Exec& exec, const LaneMemory<Dim, Real, Device>& m,
+                      const Particles<Dim, Real, Device>& particles) {
+  Kokkos::parallel_for("vsb::unpack_particles", Kokkos::RangePolicy<Exec>(exec, 0, m.lanes.group_count),
+                       kernel::UnpackGroup<Dim, Real, Device>{m.lanes, particles, m.grid});
+}
+
+}  // namespace vsb

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// One explicit MUSL step on cell lanes: the same step as in kernels/step.hpp, in the paper's order, with the
+/// particles read and written in two sweeps. What the particles give to the nodes is summed up at the end of
+/// a step for the next one, so the virtual stress goes in a step ahead.
+#pragma once
+
+#include <vsb/kernels/lane_sweeps.hpp>
+#include <vsb/kernels/mark_lanes.hpp>
+#include <vsb/kernels/migrate_lanes.hpp>
+#include <vsb/kernels/step.hpp>
+#include <vsb/kernels/update_lane_nodes.hpp>
+
+namespace vsb {
+
+/// What a step on cell lanes works on.
+template <int Dim, class Real, class Device>
+struct LaneState {
+  LaneMemory<Dim, Real, Device> memory;
+  LaneBoundary<Dim, Device> boundary;
+  long long repacked = 0;  ///< times
+
+  bool cubic() const {
+    for (int i = 1; i < Dim; ++i)
+      if (memory.grid.spacing[i] != memory.grid.spacing[0]) return false;
+    return true;
+  }
+};
+
+namespace detail {
+
+/// Calls work(sums), with cells that are cubes or not.
+template <int Dim, class Real, class Device, class Work>
+void with_lane_sums(const LaneState<Dim, Real, Device>& s, const Work& work) {
+  const auto& m = s.memory;
+  if (s.cubic())
+    work(LaneSums<Dim, Real, Device, true>{m.lanes, m.grid, s.boundary.tractions});
+  else
+    work(LaneSums<Dim, Real, Device, false>{m.lanes, m.grid, s.boundary.tractions});
+}
+
+template <class Exec>
+using OverLayers = Kokkos::RangePolicy<Exec, Kokkos::Schedule<Kokkos::Dynamic>>;
+
+template <class Exec, int Dim, class Real, class Device>
+OverLayers<Exec> over_layers(const Exec& exec, const LaneState<Dim, Real, Device>& s) {
+  return OverLayers<Exec>(exec, 0, s.memory.lanes.layers(), Kokkos::ChunkSize(1));
+}
+
+/// Sweep A alone.
+template <class Exec, class Field, int Dim, class Real, class Device>
+void sum_lanes(const Exec& exec, const LaneState<Dim, Real, Device>& s, const Field& field) {
+  with_lane_sums(s, [&](const auto& sums) {
+    constexpr bool cubic = std::decay_t<decltype(sums)>::cubic;
+    Kokkos::parallel_for("vsb::sum_lanes", over_layers(exec, s),
+                         kernel::SumLanes<Dim, Real, Device, cubic, Field>{sums, s.memory.nodes, field});
+  });
+}
+
+template <class Exec, int Dim, class Real, class Device>
+void mark_packed_lanes(const Exec& exec, LaneState<Dim, Real, Device>& s) {
+  fit_boundary(exec, s.memory.lanes, s.boundary);
+  update_occupied(exec, s.memory.lanes, s.boundary);
+  mark_lanes(exec, s.memory.lanes, s.memory.grid.cells, s.boundary, true);
+}
+
+}  // namespace detail
+
+/// Packs the particles; s.memory.grid and walls and what s.boundary declares must be set. Returns -1, or the
+/// lowest number of a particle outside the grid.
+template <class Exec, int Dim, class Real, class Device>
+int pack_lanes(const Exec& exec, const Particles<Dim, Real, Device>& particles,
+               LaneState<Dim, Real, Device>& s) {
+  const int lost = pack_particles(exec, particles, s.memory);
+  if (lost < 0) detail::mark_packed_lanes(exec, s);
+  return lost;
+}
+
+/// Sums up for the first step, or anew after a change of loads; `virtual_stress` is the field at the end of
+/// the step to come.
+template <class Exec, class Field, int Dim, class Real, class Device>
+void prepare_lane_step(const Exec& exec, const LaneState<Dim, Real, Device>& s,
+                       const Field& virtual_stress) {
+  detail::sum_lanes(exec, s, virtual_stress);
+}
+
+/// Advances by one step, and prepares the next one with its virtual stress. Returns -1, or the lowest number
+/// of a particle that left the grid.
+template <class Exec, class Field, class Material, class Volume, int Dim, class Real, class Device>
+int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material& material,
+              const Volume& volume, const Field& next_virtual_stress, const StepOptions<Dim, Real>& options) {
+  const ProfilingRegion region("vsb::lane_step");
+  auto& m = s.memory;
+  const Kokkos::RangePolicy<Exec> over_chunks(exec, 0, m.lanes.node_count / m.lanes.width);
+
+  Kokkos::parallel_for("vsb::update_lane_nodes", over_chunks,
+                       kernel::UpdateLaneNodes<Dim, Real, Device>{
+                           {m.nodes}, options.gravity, m.grid.inverse_spacing, options.damping, options.dt});
+  detail::with_lane_sums(s, [&](const auto& sums) {
+    constexpr bool cubic = std::decay_t<decltype(sums)>::cubic;
+    Kokkos::parallel_for("vsb::accelerate_lanes", detail::over_layers(exec, s),
+                         kernel::AccelerateLanes<Dim, Real, Device, cubic>{sums, m.nodes});
+    Kokkos::parallel_for("vsb::remap_lane_nodes", over_chunks,
+                         kernel::RemapLaneNodes<Dim, Real, Device>{
+                             {m.nodes}, options.dt * m.grid.inverse_spacing[0]});
+    Kokkos::parallel_for("vsb::move_lanes", detail::over_layers(exec, s),
+                         kernel::MoveLanes<Dim, Real, Device, cubic, Field, Material, Volume>{
+                             sums, m.nodes, next_virtual_stress, material, volume, m.leavers});
+  });
+  if (count_leavers(exec, m) == 0) return -1;
+  if (take_in_leavers(exec, m, next_virtual_stress, s.boundary.tractions) > 0) {
+    const int lost = repack_lanes(exec, m);
+    if (lost >= 0) return lost;
+    ++s.repacked;
+    detail::mark_packed_lanes(exec, s);
+    detail::sum_lanes(exec, s, next_virtual_stress);
+  } else if (update_occupied(exec, m.lanes, s.boundary)) {
+    if constexpr (Field::loaded) {
+      mark_lanes(exec, m.lanes, m.grid.cells, s.boundary, false);
+      detail::sum_lanes(exec, s, next_virtual_stress);
+    }
+  }
+  return -1;
+}
+
+}  // namespace vsb

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Algorithm 1 on cell lanes (see kernels/mark_boundary_nodes.hpp): from the cells that hold particles to the
+/// tractions of every node and to what a group has to know of them. Words of bits and groups whose nodes did
+/// not change are left alone.
+#pragma once
+
+#include <vsb/kernels/mark_boundary_nodes.hpp>
+#include <vsb/physics/virtual_stress.hpp>
+#include <vsb/views/cell_lanes.hpp>
+
+namespace vsb {
+
+/// Which tractions act on the nodes of cell lanes.
+template <int Dim, class Device>
+struct LaneBoundary {
+  using Rows = typename CellBits<Device>::Rows;
+  CellBits<Device> bits;                  ///< of the box; bits.occupied is kept up to date by every sweep
+  Rows marked, active;                    ///< [row of nodes of the box][word]: N1, and nodes with mass
+  Kokkos::View<int*, Device> changed;     ///< [row of nodes]: 1 where tractions changed
+  BoundaryNodes<Device> tractions;        ///< [node of the lanes]: those that act there
+  TractionMask everywhere = 0;            ///< tractions declared at all nodes
+  BoundaryNodes<Device> declared;         ///< [node of the grid]: tractions declared at some; may be empty
+  TractionMask conservative = 0;          ///< those that act at all active nodes
+  int count = 0;                          ///< nodes at which a traction acts
+};
+
+namespace kernel {
+
+/// One row of cells: which of them hold particles; counts the words that changed.
+template <int Dim, class Real, class Device>
+struct OccupyLanes {
+  CellLanes<Dim, Real, Device> lanes;
+  typename CellBits<Device>::Rows occupied;
+
+  KOKKOS_FUNCTION void operator()(int row, int& changes) const {
+    constexpr int width = Lanes<Real>::width;
+    const int per_row = lanes.groups_per_row(), words = static_cast<int>(occupied.extent(1));
+    for (int w = 0; w < words; ++w) {
+      std::uint64_t bits = 0;
+      for (int x = 64 / width * w; x < math::min(64 / width * (w + 1), per_row); ++x) {
+        const int g = lanes.group_at(row * per_row + x);
+        if (g >= 0) bits |= cells_of(lanes.groups(g)) << (x * width - 64 * w);
+      }
+      if (bits != occupied(row, w)) ++changes;
+      occupied(row, w) = bits;
+    }
+  }
+  KOKKOS_FUNCTION std::uint64_t cells_of(const LaneGroup<Dim>& group) const {
+    constexpr int width = Lanes<Real>::width;
+    constexpr auto all = static_cast<std::uint64_t>(-1) >> (64 - width);
+    std::uint64_t bits = 0;
+    for (int s = 0; s < group.slots && bits != all; ++s)
+      for (int l = 0; l < width; ++l)
+        if (lanes.id(static_cast<size_t>(group.first + s) * width + static_cast<size_t>(l)) >= 0)
+          bits |= std::uint64_t(1) << l;
+    return bits;
+  }
+};
+
+/// One word of nodes: N1, and the tractions of the nodes where anything changed. Counts loaded nodes.
+template <int Dim, class Real, class Device>
+struct MarkLaneNodes {
+  CellLanes<Dim, Real, Device> lanes;
+  LaneBoundary<Dim, Device> boundary;
+  BitRows<Dim> tiling;
+  Vector<Dim, int> grid_cells;
+  bool anew;  ///< whether or not anything changed
+
+  KOKKOS_FUNCTION void operator()(int r) const {
+    const Vector<2, int> at{{r % tiling.node_rows[0], r / tiling.node_rows[0]}};
+    const Vector<2, int> from{{at[0] - 1, at[1] - 1}};
+    boundary.changed(r) = 0;
+    for (int w = 0; w < tiling.words; ++w) {
+      const std::uint64_t active =
+          tiling.existing(at, w, 1) & dilated_word(boundary.bits.occupied, tiling, w, from, at, 0, 1);
+      const std::uint64_t marked = active & dilated_word(boundary.bits.boundary, tiling, w, from, at, 0, 1);
+      if (!anew && marked == boundary.marked(r, w) && active == boundary.active(r, w)) continue;
+      boundary.marked(r, w) = marked;
+      boundary.active(r, w) = active;
+      boundary.changed(r) = 1;
+      write(r, w, at, marked, active);
+    }
+  }
+  KOKKOS_FUNCTION void write(int r, int w, const Vector<2, int>& at, std::uint64_t marked,
+                             std::uint64_t active) const {
+    constexpr int width = Lanes<Real>::width;
+    const int chunks = lanes.groups_per_row() + 1;
+    for (int b = 0; b < 64; ++b) {
+      const int x = 64 * w + b;
+      if (x >= chunks * width) return;
+      const int chunk = lanes.chunk_at(r * chunks + x / width);
+      if (chunk < 0) continue;
+      const TractionMask here = marked >> b & 1   ? ~TractionMask(0)
+                                : active >> b & 1 ? boundary.conservative
+                                                  : 0;
+      boundary.tractions(chunk * width + x % width) = here == 0 ? 0 : here & declared(x, at);
+    }
+  }
+  KOKKOS_FUNCTION TractionMask declared(int x, const Vector<2, int>& at) const {
+    TractionMask mask = boundary.everywhere;
+    if (boundary.declared.size() == 0) return mask;
+    int node = 0;
+    for (int i = Dim - 1; i >= 0; --i)
+      node = node * (grid_cells[i] + 1) + lanes.box.first[i] + (i == 0 ? x : at[i > 0 ? i - 1 : 0]);
+    return mask | boundary.declared(node);
+  }
+};
+
+/// One group whose nodes changed: how it is loaded.
+template <int Dim, class Real, class Device>
+struct LoadGroup {
+  CellLanes<Dim, Real, Device> lanes;
+  LaneBoundary<Dim, Device> boundary;
+
+  KOKKOS_FUNCTION void operator()(int g) const {
+    constexpr int width = Lanes<Real>::width, rows = LaneGroup<Dim>::corner_rows;
+    auto& group = lanes.groups(g);
+    bool changed = false;
+    for (int r = 0; r < rows; ++r) changed = changed || boundary.changed(lanes.node_row(group.row, r)) != 0;
+    if (!changed) return;
+    TractionMask common = 0;
+    bool same = true;
+    std::uint64_t all = ~std::uint64_t(0), any = 0;
+    for (int r = 0; r < rows; ++r) {
+      group.loaded[r] = 0;
+      for (int l = 0; l <= width; ++l) {
+        const TractionMask mask = boundary.tractions(group.node[r] + l);
+        if (mask == 0) continue;
+        group.loaded[r] |= std::uint64_t(1) << l;
+        if (common == 0) common = mask;
+        same = same && mask == common;
+      }
+      const auto left_and_right = group.loaded[r] & group.loaded[r] >> 1;
+      all &= left_and_right;
+      any |= group.loaded[r] | group.loaded[r] >> 1;
+    }
+    constexpr auto cells = static_cast<std::uint64_t>(-1) >> (64 - width);
+    group.tractions = common;
+    group.load = common == 0                      ? GroupLoad::none
+                 : !same                          ? GroupLoad::mixed
+                 : (all & cells) == (any & cells) ? GroupLoad::whole
+                                                  : GroupLoad::part;
+    if (group.load == GroupLoad::whole) group.loaded[0] = all & cells;  // of cells now, not of nodes
+  }
+};
+
+/// Counts loaded nodes.
+template <class Device>
+struct CountLoaded {
+  BoundaryNodes<Device> tractions;
+  KOKKOS_FUNCTION void operator()(int node, int& count) const {
+    if (tractions(node) != 0) ++count;
+  }
+};
+
+}  // namespace kernel
+
+/// Makes the boundary ready for lanes that were packed anew.
+template <class Exec, int Dim, class Real, class Device>
+void fit_boundary(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes, LaneBoundary<Dim, Device>& b) {
+  const CellNumbering<Dim> box{lanes.box.cells};
+  const BitRows<Dim> tiling(box);
+  const auto cell_rows = static_cast<size_t>(tiling.cell_row_count()),
+             node_rows = static_cast<size_t>(tiling.node_row_count()),
+             words = static_cast<size_t>(tiling.words), nodes = static_cast<size_t>(lanes.node_count);
+  using Rows = typename CellBits<Device>::Rows;
+  if (b.bits.occupied.extent(0) != cell_rows || b.bits.occupied.extent(1) != words) {
+    b.bits.occupied = Rows("vsb::box_occupied", cell_rows, words);
+    b.bits.exterior = Rows("vsb::box_exterior", cell_rows, words);
+    b.bits.boundary = Rows("vsb::box_boundary", cell_rows, words);
+    b.marked = Rows("vsb::box_marked", node_rows, words);
+    b.active = Rows("vsb::box_active", node_rows, words);
+    b.changed = decltype(b.changed)("vsb::box_changed", node_rows);
+  }
+  if (b.tractions.extent(0) < nodes)
+    b.tractions = BoundaryNodes<Device>("vsb::lane_tractions", nodes + nodes / 16);
+  else
+    Kokkos::deep_copy(exec, b.tractions, TractionMask(0));
+}
+
+/// Brings bits.occupied up to date; whether it changed. Waits for the device.
+template <class Exec, int Dim, class Real, class Device>
+bool update_occupied(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes,
+                     const LaneBoundary<Dim, Device>& b) {
+  int changes = 0;
+  Kokkos::parallel_reduce("vsb::occupy_lanes", Kokkos::RangePolicy<Exec>(exec, 0, lanes.row_count()),
+                          kernel::OccupyLanes<Dim, Real, Device>{lanes, b.bits.occupied}, changes);
+  exec.fence();
+  return changes > 0;
+}
+
+/// From bits.occupied to the loads of nodes and groups. anew: after packing anew, or where a declaration
+/// changed.
+template <class Exec, int Dim, class Real, class Device>
+void mark_lanes(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes,
+                const Vector<Dim, int>& grid_cells, LaneBoundary<Dim, Device>& b, bool anew) {
+  BitRows<Dim> tiling(CellNumbering<Dim>{lanes.box.cells});
+  for (int i = 0; i < Dim; ++i) {  // the box may reach over the faces of the grid
+    tiling.first[i] = math::max(0, -lanes.box.first[i]);
+    tiling.last[i] = math::min(lanes.box.cells[i], grid_cells[i] - lanes.box.first[i]) - 1;
+  }
+  const Kokkos::RangePolicy<Exec> over_words(exec, 0, tiling.cell_row_count() * tiling.words);
+  Kokkos::parallel_for("vsb::find_exterior_cells", over_words, kernel::FindExterior<Dim, Device>{b.bits, tiling});
+  Kokkos::parallel_for("vsb::find_boundary_cells", over_words, kernel::FindBoundary<Dim, Device>{b.bits, tiling});
+  Kokkos::parallel_for("vsb::mark_lane_nodes", Kokkos::RangePolicy<Exec>(exec, 0, tiling.node_row_count()),
+                       kernel::MarkLaneNodes<Dim, Real, Device>{lanes, b, tiling, grid_cells, anew});
+  Kokkos::parallel_for("vsb::load_groups", Kokkos::RangePolicy<Exec>(exec, 0, lanes.group_count),
+                       kernel::LoadGroup<Dim, Real, Device>{lanes, b});
+}
+
+/// Nodes at which a traction acts. Waits for the device.
+template <class Exec, int Dim, class Real, class Device>
+int count_loaded_nodes(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes,
+                       const LaneBoundary<Dim, Device>& b) {
+  int count = 0;
+  Kokkos::parallel_reduce("vsb::count_loaded", Kokkos::RangePolicy<Exec>(exec, 0, lanes.node_count),
+                          kernel::CountLoaded<Device>{b.tractions}, count);
+  exec.fence();
+  return count;
+}
+
+}  // namespace vsb

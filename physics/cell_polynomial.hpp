@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// The multilinear basis of one cell in the monomials of its local coordinates xi in [0, 1]^Dim,
+///   q_k(xi) = prod_(i in k) xi_i,   k = 0, ..., 2^Dim - 1,   i in k: bit i of k is set,
+/// which takes a third of the operations of the nodes' basis functions N_a where many particles share a cell:
+/// - a nodal field is sum_a N_a f_a = sum_k c_k q_k, with c from f by differences along each direction;
+/// - a sum over particles sum_p N_a(xi_p) w_p follows from the moments sum_p q_k(xi_p) w_p by the transposed
+///   differences, and so does sum_p w_p . grad N_a from the moments of grad q_k.
+/// T is a number, or a pack with a cell in every lane.
+#pragma once
+
+#include <vsb/views/static_for.hpp>
+#include <vsb/views/tensor.hpp>
+
+namespace vsb {
+
+/// Coefficients or moments, one per monomial.
+template <int Dim, class T>
+using CellPolynomial = Vector<(1 << Dim), T>;
+
+/// Nodal values f_a, a as in multilinear.hpp, to coefficients, in place.
+template <int Dim, class T>
+KOKKOS_FORCEINLINE_FUNCTION void coefficients_from_nodes(CellPolynomial<Dim, T>& f) {
+  static_for<Dim>([&](auto i) {
+    static_for<(1 << Dim)>([&](auto a) {
+      if constexpr (a >> i & 1) f[a] = f[a] - f[a ^ (1 << i)];
+    });
+  });
+}
+
+/// Moments to sums at the nodes, in place.
+template <int Dim, class T>
+KOKKOS_FORCEINLINE_FUNCTION void nodes_from_moments(CellPolynomial<Dim, T>& m) {
+  static_for<Dim>([&](auto i) {
+    static_for<(1 << Dim)>([&](auto a) {
+      if constexpr ((a >> i & 1) == 0) m[a] = m[a] - m[a | (1 << i)];
+    });
+  });
+}
+
+namespace detail {
+/// The sum over the monomials of directions 0, ..., i, for the coefficients from `first` on; direction
+/// `Derived`, if it is one of them, is differentiated.
+template <int Derived, int i, int first, int Dim, class T>
+KOKKOS_FORCEINLINE_FUNCTION T nested(const CellPolynomial<Dim, T>& c, const Vector<Dim, T>& xi) {
+  if constexpr (i < 0)
+    return c[first];
+  else if constexpr (i == Derived)
+    return nested<Derived, i - 1, (first | 1 << i), Dim>(c, xi);
+  else
+    return nested<Derived, i - 1, first, Dim>(c, xi) +
+           nested<Derived, i - 1, (first | 1 << i), Dim>(c, xi) * xi[i];
+}
+}  // namespace detail
+
+/// sum_k c_k q_k(xi).
+template <int Dim, class T>
+KOKKOS_FORCEINLINE_FUNCTION T value_at(const CellPolynomial<Dim, T>& c, const Vector<Dim, T>& xi) {
+  return detail::nested<-1, Dim - 1, 0, Dim>(c, xi);
+}
+
+/// d/dxi_j of it.
+template <int j, int Dim, class T>
+KOKKOS_FORCEINLINE_FUNCTION T derivative_at(const CellPolynomial<Dim, T>& c, const Vector<Dim, T>& xi) {
+  return detail::nested<j, Dim - 1, 0, Dim>(c, xi);
+}
+
+/// The monomials; q_0 = 1 stands for itself and is best not multiplied with.
+template <int Dim, class T>
+KOKKOS_FORCEINLINE_FUNCTION CellPolynomial<Dim, T> monomials(const Vector<Dim, T>& xi) {
+  CellPolynomial<Dim, T> q;
+  q[0] = T(1);
+  static_for<Dim>([&](auto i) {
+    q[1 << i] = xi[i];
+    static_for<(1 << i)>([&](auto k) {
+      if constexpr (k > 0) q[k | (1 << i)] = q[k] * xi[i];
+    });
+  });
+  return q;
+}
+
+/// m_k += w q_k.
+template <int Dim, class T>
+KOKKOS_FORCEINLINE_FUNCTION void add_moments(CellPolynomial<Dim, T>& m, T w, const Vector<Dim, T>& xi) {
+  Vector<(1 << (Dim - 1)), T> wq;  // over all directions but the last
+  wq[0] = w;
+  static_for<Dim - 1>([&](auto i) {
+    static_for<(1 << i)>([&](auto k) { wq[k | (1 << i)] = wq[k] * xi[i]; });
+  });
+  static_for<(1 << (Dim - 1))>([&](auto k) {
+    m[k] += wq[k];
+    m[k | (1 << (Dim - 1))] += wq[k] * xi[Dim - 1];
+  });
+}
+
+/// The same from the monomials at hand, for several w.
+template <int Dim, class T>
+KOKKOS_FORCEINLINE_FUNCTION void add_moments_of(CellPolynomial<Dim, T>& m, T w,
+                                                const CellPolynomial<Dim, T>& q) {
+  m[0] += w;
+  static_for<(1 << Dim)>([&](auto k) {
+    if constexpr (k > 0) m[k] += w * q[k];
+  });
+}
+
+/// m_k += sum_i w_i dq_k/dxi_i; m_0 stays.
+template <int Dim, class T>
+KOKKOS_FORCEINLINE_FUNCTION void add_gradient_moments(CellPolynomial<Dim, T>& m, const Vector<Dim, T>& w,
+                                                      const CellPolynomial<Dim, T>& q) {
+  static_for<(1 << Dim)>([&](auto k) {
+    static_for<Dim>([&](auto i) {
+      if constexpr (k == (1 << i))
+        m[k] += w[i];
+      else if constexpr (k >> i & 1)
+        m[k] += w[i] * q[k ^ (1 << i)];
+    });
+  });
+}
+
+/// The moments of w dq_k/dxi_i from those of w q_k, which need no m_k of all directions: sums over particles
+/// of a constant weight's gradients without another look at the particles.
+template <int i, int Dim, class T>
+KOKKOS_FORCEINLINE_FUNCTION CellPolynomial<Dim, T> gradient_moments(const CellPolynomial<Dim, T>& m) {
+  CellPolynomial<Dim, T> g;
+  static_for<(1 << Dim)>([&](auto k) {
+    if constexpr (k >> i & 1)
+      g[k] = m[k ^ (1 << i)];
+    else
+      g[k] = T(0);
+  });
+  return g;
+}
+
+}  // namespace vsb

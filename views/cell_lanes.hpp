@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Particles packed by cell, one cell in every lane of a pack.
+///
+/// The cells of a row along x are taken `width` at a time, as a group. Particle number s of the cell in lane l
+/// of a group is entry (first + s) * width + l of every column; a lane that has fewer particles than the
+/// group has slots is filled up with ghosts, without mass and volume, so that the arithmetic needs no masks.
+/// Where a particle is, the group and the lane say up to the cell, and xi in [0, 1)^Dim within it.
+///
+/// Cells and nodes are counted within a box around the particles, so that memory and time follow the body
+/// and not the grid. A layer is all groups of one k (one j in 2D, everything in 1D); it alone writes to the
+/// lower sums of the node plane below it and to the upper sums of the plane above it, and a node's sums are
+/// the two together. One thread works on a layer, so the sums are the same for any number of threads.
+#pragma once
+
+#include <vsb/views/masks.hpp>
+#include <vsb/views/pack.hpp>
+#include <vsb/views/particles.hpp>
+#include <vsb/views/static_for.hpp>
+
+namespace vsb {
+
+/// How tractions act on the nodes of a group.
+enum class GroupLoad : std::uint8_t {
+  none,   ///< at no node
+  whole,  ///< at all nodes of a cell or at none, by one mask
+  part,   ///< at some nodes, by one mask
+  mixed   ///< by masks that differ from node to node
+};
+
+/// `width` cells side by side, and where their particles and nodes are.
+template <int Dim>
+struct LaneGroup {
+  static constexpr int corner_rows = 1 << (Dim - 1);  ///< rows of nodes along x; bit i: upper in direction 1 + i
+  int first;                         ///< slot
+  int slots;                         ///< in use
+  int capacity;                      ///< slots that it may use
+  int x;                             ///< cells x * width, ... of the box's row
+  int row;                           ///< of cells in the box
+  int node[corner_rows];             ///< the lower node of lane 0 in every corner row
+  GroupLoad load;
+  TractionMask tractions;            ///< of the loaded nodes, where they have the same
+  std::uint64_t loaded[corner_rows]; ///< bit l: the lower node of lane l is loaded, up to l = width
+};
+
+/// A box of cells of a grid.
+template <int Dim>
+struct CellBox {
+  Vector<Dim, int> first;  ///< lowest cell
+  Vector<Dim, int> cells;
+};
+
+template <int Dim, class Real, class Device>
+struct CellLanes {
+  static constexpr int width = Lanes<Real>::width;
+  static constexpr int stress_size = symmetric_components(Dim);
+  static constexpr int rows_of_corners = LaneGroup<Dim>::corner_rows;
+  using P = typename Lanes<Real>::Pack;
+  using Columns = Kokkos::View<Real**, Kokkos::LayoutLeft, Device>;
+  using Ints = Kokkos::View<int*, Device>;
+
+  /// Where a particle's numbers are: xi, velocity in m/s, mass, volume, Cauchy stress, material state, units
+  /// as in Particles.
+  static constexpr int xi_column = 0, velocity_column = Dim, mass_column = 2 * Dim,
+                       volume_column = 2 * Dim + 1, stress_column = 2 * Dim + 2,
+                       state_column = 2 * Dim + 2 + stress_size;
+
+  Columns data;                                  ///< [slot * width + lane][column]
+  Ints id;                                       ///< [slot * width + lane]: number of the particle; ghosts: -1
+  Kokkos::View<LaneGroup<Dim>*, Device> groups;  ///< by layer, row and x
+  Ints layer_first;                              ///< [layers + 1]: the groups of a layer
+  Ints plane_first;                              ///< [layers + 2]: the nodes of a plane
+  Ints group_at;                                 ///< [row of cells][groups per row]: number, -1 where there is none
+  Ints chunk_at;                                 ///< [row of nodes][groups per row + 1]: `width` nodes side by side
+  CellBox<Dim> box;
+  int state_size = 0;                            ///< numbers of material state per particle
+  int group_count = 0, slot_count = 0, node_count = 0;
+  int particle_count = 0;
+
+  KOKKOS_FUNCTION int groups_per_row() const { return (box.cells[0] + width - 1) / width; }
+  KOKKOS_FUNCTION int layers() const { return Dim == 1 ? 1 : box.cells[Dim - 1]; }
+  KOKKOS_FUNCTION int rows_per_layer() const { return Dim == 3 ? box.cells[1 % Dim] : 1; }
+  KOKKOS_FUNCTION int row_count() const { return layers() * rows_per_layer(); }
+  KOKKOS_FUNCTION int node_rows_per_plane() const { return Dim == 3 ? box.cells[1 % Dim] + 1 : 1; }
+  KOKKOS_FUNCTION int columns() const { return state_column + state_size; }
+  /// The row of nodes at corner row c of a row of cells.
+  KOKKOS_FUNCTION int node_row(int row, int c) const {
+    const int j = row % rows_per_layer(), k = row / rows_per_layer();
+    if constexpr (Dim == 1) return 0;
+    if constexpr (Dim == 2) return k + c;
+    return (k + (c >> 1)) * node_rows_per_plane() + j + (c & 1);
+  }
+  /// The grid's cell in a lane.
+  KOKKOS_FUNCTION Vector<Dim, int> cell(const LaneGroup<Dim>& group, int lane) const {
+    Vector<Dim, int> c;
+    c[0] = box.first[0] + group.x * width + lane;
+    if constexpr (Dim == 2) c[1] = box.first[1] + group.row;
+    if constexpr (Dim == 3) {
+      c[1] = box.first[1] + group.row % rows_per_layer();
+      c[2] = box.first[2] + group.row / rows_per_layer();
+    }
+    return c;
+  }
+
+  KOKKOS_FORCEINLINE_FUNCTION Real* at(int column, size_t entry) const {
+    return data.data() + static_cast<size_t>(column) * data.stride(1) + entry;
+  }
+  KOKKOS_FORCEINLINE_FUNCTION P load(int column, size_t entry) const { return P::load(at(column, entry)); }
+  KOKKOS_FORCEINLINE_FUNCTION void store(int column, size_t entry, P value) const {
+    value.store(at(column, entry));
+  }
+  template <int N>
+  KOKKOS_FORCEINLINE_FUNCTION Vector<N, P> load_row(int column, size_t entry) const {
+    Vector<N, P> v;
+    static_for<N>([&](auto i) { v[i] = load(column + i, entry); });
+    return v;
+  }
+  template <class Row>
+  KOKKOS_FORCEINLINE_FUNCTION void store_row(int column, size_t entry, const Row& v) const {
+    static_for<Row::size>([&](auto i) { store(column + i, entry, v[i]); });
+  }
+  KOKKOS_FORCEINLINE_FUNCTION SymmetricTensor<Dim, P> load_stress(size_t entry) const {
+    SymmetricTensor<Dim, P> s;
+    static_for<stress_size>([&](auto c) { s[c] = load(stress_column + c, entry); });
+    return s;
+  }
+  /// Makes an entry a ghost.
+  KOKKOS_FUNCTION void clear(size_t entry) const {
+    for (int c = 0; c < columns(); ++c) *at(c, entry) = c < Dim ? Real(0.5) : Real(0);
+    id(entry) = -1;
+  }
+};
+
+/// Nodes of the cell lanes, in chunks of `width` side by side.
+template <int Dim, class Real, class Device>
+struct LaneNodes {
+  static constexpr int sum_columns = 1 + 2 * Dim;
+  static constexpr int lower_sums = 0, upper_sums = sum_columns, increment_column = 2 * sum_columns,
+                       displacement_column = increment_column + Dim,
+                       remapped_column = displacement_column + Dim, inverse_mass_column = remapped_column + Dim,
+                       column_count = inverse_mass_column + 1;
+  using P = typename Lanes<Real>::Pack;
+  Kokkos::View<Real**, Kokkos::LayoutLeft, Device> data;  ///< [node][column]: lower and upper sums of mass,
+                                                          ///< momentum, force; dt a; dt v in cells; dt v* in
+                                                          ///< m; 1 / m
+  Kokkos::View<ComponentMask*, Device> fixed;             ///< [node]
+
+  KOKKOS_FORCEINLINE_FUNCTION Real* at(int column, int node) const {
+    return data.data() + static_cast<size_t>(column) * data.stride(1) + node;
+  }
+  KOKKOS_FORCEINLINE_FUNCTION P load(int column, int node) const { return P::load(at(column, node)); }
+};
+
+/// Particles on their way to another cell, in the order in which their layer lost them.
+template <int Dim, class Real, class Device>
+struct Leavers {
+  struct Head {
+    int id;
+    Vector<Dim, int> cell;  ///< where to
+    bool homeless;          ///< no place there
+  };
+  Kokkos::View<Real**, Kokkos::LayoutRight, Device> data;  ///< [entry][column of CellLanes]
+  Kokkos::View<Head*, Device> head;
+  Kokkos::View<int*, Device> first;  ///< [layer]: first entry of the list of the layer
+  Kokkos::View<int*, Device> count;  ///< [layer]
+};
+
+}  // namespace vsb

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// A pack of numbers that one instruction works on. Expressions read like those of a single number, and the
+/// same function templates take both.
+///
+/// A product that is added to or subtracted from something is rounded once, by a fused multiply-add, wherever
+/// the machine has one: the source decides, not the compiler, so that every backend computes the same bits.
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+#include <vsb/views/kokkos_compat.hpp>
+
+#if defined(__FMA__) && !defined(__CUDACC__) && !defined(__HIPCC__)
+#include <immintrin.h>
+#define VSB_PACK_FMA 1
+#endif
+
+namespace vsb {
+
+namespace detail {
+/// The compiler's own vectors of W numbers.
+template <class T, int W>
+struct VectorOf {
+  typedef T Aligned __attribute__((vector_size(W * sizeof(T))));
+  typedef T Unaligned __attribute__((vector_size(W * sizeof(T)), aligned(sizeof(T))));
+};
+}  // namespace detail
+
+template <class T, int W>
+struct PackProduct;
+
+/// A truth value per lane: all bits set, or none.
+template <class T, int W>
+struct PackMask {
+  using Word = std::conditional_t<sizeof(T) == 8, std::int64_t, std::int32_t>;
+  using Native = typename detail::VectorOf<Word, W>::Aligned;
+  Native v;
+
+  /// Lane l is true where bit l is set.
+  KOKKOS_FORCEINLINE_FUNCTION static PackMask from_bits(std::uint64_t bits) {
+    Native lane{};
+    for (int l = 0; l < W; ++l) lane[l] = Word(1) << l;
+    return {((Native{} + static_cast<Word>(bits)) & lane) != 0};
+  }
+  KOKKOS_FORCEINLINE_FUNCTION friend PackMask operator&(PackMask a, PackMask b) { return {a.v & b.v}; }
+  KOKKOS_FORCEINLINE_FUNCTION friend PackMask operator|(PackMask a, PackMask b) { return {a.v | b.v}; }
+  KOKKOS_FORCEINLINE_FUNCTION PackMask operator!() const { return {~v}; }
+  KOKKOS_FORCEINLINE_FUNCTION bool operator[](int lane) const { return v[lane] != 0; }
+};
+
+template <class T, int W>
+KOKKOS_FORCEINLINE_FUNCTION bool any(PackMask<T, W> mask) {
+#if defined(VSB_PACK_FMA)
+  if constexpr (W * sizeof(T) == 32)
+    return _mm256_testz_si256(reinterpret_cast<__m256i>(mask.v), reinterpret_cast<__m256i>(mask.v)) == 0;
+#endif
+  typename PackMask<T, W>::Word sum = 0;
+  for (int l = 0; l < W; ++l) sum |= mask.v[l];
+  return sum != 0;
+}
+
+template <class T, int W>
+struct Pack {
+  static constexpr int width = W;
+  using value_type = T;
+  using Mask = PackMask<T, W>;
+  using Native = typename detail::VectorOf<T, W>::Aligned;
+  using Unaligned = typename detail::VectorOf<T, W>::Unaligned;
+  Native v;
+
+  Pack() = default;
+  KOKKOS_FORCEINLINE_FUNCTION Pack(Native n) : v(n) {}
+  KOKKOS_FORCEINLINE_FUNCTION Pack(T x) : v(x - Native{}) {}
+
+  /// Of W numbers side by side, wherever they begin.
+  KOKKOS_FORCEINLINE_FUNCTION static Pack load(const T* from) {
+    return Native(*reinterpret_cast<const Unaligned*>(from));
+  }
+  KOKKOS_FORCEINLINE_FUNCTION void store(T* to) const { *reinterpret_cast<Unaligned*>(to) = v; }
+  KOKKOS_FORCEINLINE_FUNCTION T operator[](int lane) const { return v[lane]; }
+  KOKKOS_FORCEINLINE_FUNCTION void set(int lane, T x) { v[lane] = x; }
+
+  KOKKOS_FORCEINLINE_FUNCTION friend Pack operator+(Pack a, Pack b) { return a.v + b.v; }
+  KOKKOS_FORCEINLINE_FUNCTION friend Pack operator-(Pack a, Pack b) { return a.v - b.v; }
+  KOKKOS_FORCEINLINE_FUNCTION friend PackProduct<T, W> operator*(Pack a, Pack b) { return {a, b}; }
+  KOKKOS_FORCEINLINE_FUNCTION friend Pack operator/(Pack a, Pack b) { return a.v / b.v; }
+  KOKKOS_FORCEINLINE_FUNCTION Pack operator-() const { return -v; }
+  KOKKOS_FORCEINLINE_FUNCTION Pack& operator+=(Pack b) { return *this = *this + b; }
+  KOKKOS_FORCEINLINE_FUNCTION Pack& operator-=(Pack b) { return *this = *this - b; }
+  KOKKOS_FORCEINLINE_FUNCTION Pack& operator*=(Pack b) { return *this = v * b.v; }
+  KOKKOS_FORCEINLINE_FUNCTION Pack& operator+=(const PackProduct<T, W>& p) {
+    return *this = fused(p.a, p.b, *this);
+  }
+  KOKKOS_FORCEINLINE_FUNCTION Pack& operator-=(const PackProduct<T, W>& p) {
+    return *this = fused(-p.a, p.b, *this);
+  }
+
+  KOKKOS_FORCEINLINE_FUNCTION friend Mask operator<(Pack a, Pack b) { return {a.v < b.v}; }
+  KOKKOS_FORCEINLINE_FUNCTION friend Mask operator>(Pack a, Pack b) { return {a.v > b.v}; }
+  KOKKOS_FORCEINLINE_FUNCTION friend Mask operator>=(Pack a, Pack b) { return {a.v >= b.v}; }
+  KOKKOS_FORCEINLINE_FUNCTION friend Mask operator<=(Pack a, Pack b) { return {a.v <= b.v}; }
+  KOKKOS_FORCEINLINE_FUNCTION friend Mask operator==(Pack a, Pack b) { return {a.v == b.v}; }
+
+  /// a b + c, rounded once where the machine can.
+  KOKKOS_FORCEINLINE_FUNCTION static Pack fused(Pack a, Pack b, Pack c) {
+#if defined(VSB_PACK_FMA)
+    if constexpr (sizeof(T) == 8 && W == 4) return Native(_mm256_fmadd_pd(a.v, b.v, c.v));
+    if constexpr (sizeof(T) == 4 && W == 8) return Native(_mm256_fmadd_ps(a.v, b.v, c.v));
+    if constexpr (sizeof(T) == 8 && W == 2) return Native(_mm_fmadd_pd(a.v, b.v, c.v));
+    if constexpr (sizeof(T) == 4 && W == 4) return Native(_mm_fmadd_ps(a.v, b.v, c.v));
+#endif
+    return a.v * b.v + c.v;
+  }
+};
+
+/// The product of two packs, not yet rounded; becomes one where nothing is added to it.
+template <class T, int W>
+struct PackProduct {
+  using P = Pack<T, W>;
+  P a, b;
+
+  KOKKOS_FORCEINLINE_FUNCTION operator P() const { return a.v * b.v; }
+  KOKKOS_FORCEINLINE_FUNCTION PackProduct operator-() const { return {-a, b}; }
+
+  KOKKOS_FORCEINLINE_FUNCTION friend P operator+(PackProduct p, P c) { return P::fused(p.a, p.b, c); }
+  KOKKOS_FORCEINLINE_FUNCTION friend P operator+(P c, PackProduct p) { return P::fused(p.a, p.b, c); }
+  KOKKOS_FORCEINLINE_FUNCTION friend P operator+(PackProduct p, PackProduct q) { return p + P(q); }
+  KOKKOS_FORCEINLINE_FUNCTION friend P operator-(PackProduct p, P c) { return P::fused(p.a, p.b, -c); }
+  KOKKOS_FORCEINLINE_FUNCTION friend P operator-(P c, PackProduct p) { return P::fused(-p.a, p.b, c); }
+  KOKKOS_FORCEINLINE_FUNCTION friend P operator-(PackProduct p, PackProduct q) { return P(p) - q; }
+  KOKKOS_FORCEINLINE_FUNCTION friend PackProduct operator*(PackProduct p, P c) { return {P(p), c}; }
+  KOKKOS_FORCEINLINE_FUNCTION friend PackProduct operator*(P c, PackProduct p) { return {c, P(p)}; }
+  KOKKOS_FORCEINLINE_FUNCTION friend PackProduct operator*(PackProduct p, PackProduct q) {
+    return {P(p), P(q)};
+  }
+};
+
+/// What kernels on cell lanes compute with: `bytes` bytes' worth of numbers.
+template <class Real>
+struct Lanes {
+  static constexpr int bytes = 32;
+  static constexpr int width = bytes / static_cast<int>(sizeof(Real));
+  using Pack = vsb::Pack<Real, width>;
+};
+
+namespace detail {
+template <class T, int W, int... L>
+KOKKOS_FORCEINLINE_FUNCTION Pack<T, W> shift_in(Pack<T, W> a, Pack<T, W> b, std::integer_sequence<int, L...>) {
+  return typename Pack<T, W>::Native(__builtin_shufflevector(a.v, b.v, (W - 1 + L)...));
+}
+}  // namespace detail
+
+/// Lane 0 is the last lane of `before`, lane l the lane l - 1 of p.
+template <class T, int W>
+KOKKOS_FORCEINLINE_FUNCTION Pack<T, W> shift_in(Pack<T, W> before, Pack<T, W> p) {
+  return detail::shift_in(before, p, std::make_integer_sequence<int, W>{});
+}
+
+namespace math {
+/// a where the condition holds, else b.
+template <class T>
+KOKKOS_FORCEINLINE_FUNCTION T select(bool condition, T a, T b) {
+  return condition ? a : b;
+}
+template <class T, int W>
+KOKKOS_FORCEINLINE_FUNCTION Pack<T, W> select(PackMask<T, W> condition, Pack<T, W> a, Pack<T, W> b) {
+  return typename Pack<T, W>::Native(condition.v ? a.v : b.v);
+}
+template <class T, int W>
+KOKKOS_FORCEINLINE_FUNCTION Pack<T, W> abs(Pack<T, W> x) {
+  return select(x < Pack<T, W>(T(0)), -x, x);
+}
+template <class T, int W>
+KOKKOS_INLINE_FUNCTION Pack<T, W> exp(Pack<T, W> x) {
+  for (int l = 0; l < W; ++l) x.set(l, exp(x[l]));
+  return x;
+}
+}  // namespace math
+
+}  // namespace vsb
