@@ -37,13 +37,6 @@ struct LaneSums {
   CellLanes<Dim, Real, Device> lanes;
   UniformGrid<Dim, Real> grid;
 
-  template <class Work>
-  KOKKOS_FORCEINLINE_FUNCTION void for_each_slot(const LaneGroup<Dim>& group, const Work& work) const {
-    const size_t first = static_cast<size_t>(group.first) * P::width,
-                 last = first + static_cast<size_t>(group.slots) * P::width;
-    for (size_t entry = first; entry < last; entry += P::width)
-      work(entry, lanes.template load_row<Dim>(lanes.xi_column, entry));
-  }
   KOKKOS_FORCEINLINE_FUNCTION static Polynomial zero() {
     Polynomial m;
     static_for<Polynomial::size>([&](auto k) { m[k] = P(Real(0)); });
@@ -54,10 +47,11 @@ struct LaneSums {
   template <bool WithVolume>
   KOKKOS_FORCEINLINE_FUNCTION void mass(const LaneGroup<Dim>& group, Sums& sums, Polynomial& volume) const {
     Polynomial m = zero();
-    for_each_slot(group, [&](size_t entry, const Vector<Dim, P>& xi) {
+    for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
+      const auto xi = lanes.load_xi(entry);
       vsb::add_moments<Dim>(m, lanes.load(lanes.mass_column, entry), xi);
       if constexpr (WithVolume) vsb::add_moments<Dim>(volume, lanes.load(lanes.volume_column, entry), xi);
-    });
+    }
     sums.add_moments(0, group, m);
   }
 
@@ -65,13 +59,14 @@ struct LaneSums {
   KOKKOS_FORCEINLINE_FUNCTION void momentum(const LaneGroup<Dim>& group, AnySums& sums) const {
     Polynomial p[Dim];
     static_for<Dim>([&](auto i) { p[i] = zero(); });
-    for_each_slot(group, [&](size_t entry, const Vector<Dim, P>& xi) {
+    for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
+      const auto xi = lanes.load_xi(entry);
       const auto q = monomials<Dim>(xi);
       const P m = lanes.load(lanes.mass_column, entry);
       static_for<Dim>([&](auto i) {
         add_moments_of<Dim>(p[i], P(m * lanes.load(lanes.velocity_column + i, entry)), q);
       });
-    });
+    }
     static_for<Dim>([&](auto i) { sums.add_moments(1 + i, group, p[i]); });
   }
 
@@ -80,7 +75,8 @@ struct LaneSums {
   KOKKOS_FORCEINLINE_FUNCTION void force(const LaneGroup<Dim>& group, Polynomial (&f)[Dim],
                                          const Stress& stress) const {
     static_for<Dim>([&](auto i) { f[i] = zero(); });
-    for_each_slot(group, [&](size_t entry, const Vector<Dim, P>& xi) {
+    for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
+      const auto xi = lanes.load_xi(entry);
       const auto q = monomials<Dim>(xi);
       const P V = lanes.load(lanes.volume_column, entry);
       auto s = stress(entry);
@@ -103,7 +99,7 @@ struct LaneSums {
           add_gradient_moments<Dim>(f[a], traction_weights<a>(s, grid.inverse_spacing), q);
         });
       }
-    });
+    }
     static_for<Dim>([&](auto i) { nodes_from_moments<Dim>(f[i]); });
   }
 
@@ -184,7 +180,8 @@ struct LaneSums {
   KOKKOS_FUNCTION void traction(const LaneGroup<Dim>& group, const Field& field, TractionMask tractions,
                                 Polynomial (&t)[Dim]) const {
     static_for<Dim>([&](auto i) { t[i] = zero(); });
-    for_each_slot(group, [&](size_t entry, const Vector<Dim, P>& xi) {
+    for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
+      const auto xi = lanes.load_xi(entry);
       const auto q = monomials<Dim>(xi);
       const P V = lanes.load(lanes.volume_column, entry);
       VirtualStressValue<Dim, P> bar;
@@ -200,7 +197,7 @@ struct LaneSums {
         add_gradient_moments<Dim>(t[a], traction_weights<a>(bar.stress, grid.inverse_spacing), q);
         add_moments_of<Dim>(t[a], P(bar.divergence[a] * V), q);
       });
-    });
+    }
     static_for<Dim>([&](auto i) { nodes_from_moments<Dim>(t[i]); });
   }
 

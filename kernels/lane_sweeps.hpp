@@ -24,7 +24,7 @@ struct SumLanes {
   LaneNodes<Dim, Real, Device> nodes;
   Field virtual_stress;
 
-  KOKKOS_FUNCTION void operator()(int layer) const {
+  [[gnu::flatten]] KOKKOS_FUNCTION void operator()(int layer) const {
     const auto& lanes = sums.lanes;
     typename LaneSums<Dim, Real, Device, Cubic>::Sums of_layer(lanes, nodes, layer);
     for (int g = lanes.layer_first(layer); g < lanes.layer_first(layer + 1); ++g) {
@@ -42,7 +42,7 @@ struct AccelerateLanes {
   LaneSums<Dim, Real, Device, Cubic> sums;
   LaneNodes<Dim, Real, Device> nodes;
 
-  KOKKOS_FUNCTION void operator()(int layer) const {
+  [[gnu::flatten]] KOKKOS_FUNCTION void operator()(int layer) const {
     const auto lanes = sums.lanes;
     LayerSums<1, Dim, Dim, Real, Device> of_layer(lanes, nodes, layer);
     for (int g = lanes.layer_first(layer); g < lanes.layer_first(layer + 1); ++g) {
@@ -50,12 +50,13 @@ struct AccelerateLanes {
       of_layer.begin(group);
       CellPolynomial<Dim, P> dv[Dim];
       static_for<Dim>([&](auto i) { dv[i] = coefficients_of(nodes, nodes.increment_column + i, group); });
-      sums.for_each_slot(group, [&](size_t entry, const Vector<Dim, P>& xi) {
+      for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
+        const auto xi = lanes.load_xi(entry);
         static_for<Dim>([&](auto i) {
           lanes.store(lanes.velocity_column + i, entry,
                       lanes.load(lanes.velocity_column + i, entry) + value_at<Dim>(dv[i], xi));
         });
-      });
+      }
       sums.momentum(group, of_layer);
     }
     of_layer.end();
@@ -73,7 +74,7 @@ struct MoveLanes {
   Volume volume;
   Leavers<Dim, Real, Device> leavers;
 
-  KOKKOS_FUNCTION void operator()(int layer) const {
+  [[gnu::flatten]] KOKKOS_FUNCTION void operator()(int layer) const {
     const auto lanes = sums.lanes;
     typename LaneSums<Dim, Real, Device, Cubic>::Sums of_layer(lanes, nodes, layer);
     leavers.count(layer) = 0;
@@ -93,7 +94,8 @@ struct MoveLanes {
       dx[i] = coefficients_of(nodes, nodes.displacement_column + i, group);
       u[i] = coefficients_of(nodes, nodes.remapped_column + i, group);
     });
-    sums.for_each_slot(group, [&](size_t entry, const Vector<Dim, P>& xi) {
+    for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
+      const auto xi = lanes.load_xi(entry);
       Matrix<Dim, P> L;  // dt L
       static_for<Dim>([&](auto i) {
         static_for<Dim>([&](auto j) {
@@ -112,7 +114,7 @@ struct MoveLanes {
         if constexpr (i > 0) inside = inside & (moved[i] >= P(Real(0))) & (moved[i] < P(Real(1)));
       });
       if (any(!inside)) leave(lanes, group, layer, entry);
-    });
+    }
   }
 
   KOKKOS_FORCEINLINE_FUNCTION void advance(const CellLanes<Dim, Real, Device>& lanes, size_t entry,

@@ -102,6 +102,14 @@ struct CellLanes {
     return c;
   }
 
+  /// The entries of a group's lane 0, one `width` after the other: begin, ..., end - width.
+  KOKKOS_FORCEINLINE_FUNCTION size_t begin(const LaneGroup<Dim>& group) const {
+    return static_cast<size_t>(group.first) * width;
+  }
+  KOKKOS_FORCEINLINE_FUNCTION size_t end(const LaneGroup<Dim>& group) const {
+    return static_cast<size_t>(group.first + group.slots) * width;
+  }
+
   KOKKOS_FORCEINLINE_FUNCTION Real* at(int column, size_t entry) const {
     return data.data() + static_cast<size_t>(column) * data.stride(1) + entry;
   }
@@ -118,6 +126,9 @@ struct CellLanes {
   template <class Row>
   KOKKOS_FORCEINLINE_FUNCTION void store_row(int column, size_t entry, const Row& v) const {
     static_for<Row::size>([&](auto i) { store(column + i, entry, v[i]); });
+  }
+  KOKKOS_FORCEINLINE_FUNCTION Vector<Dim, P> load_xi(size_t entry) const {
+    return load_row<Dim>(xi_column, entry);
   }
   KOKKOS_FORCEINLINE_FUNCTION SymmetricTensor<Dim, P> load_stress(size_t entry) const {
     SymmetricTensor<Dim, P> s;
