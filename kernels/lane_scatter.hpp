@@ -10,16 +10,14 @@
 namespace vsb {
 
 /// The coefficients of a nodal field on the cells of a group.
-template <int Dim, class Real, class Device>
-KOKKOS_FORCEINLINE_FUNCTION auto coefficients_of(const LaneNodes<Dim, Real, Device>& nodes, int column,
-                                                 const LaneGroup<Dim>& group) {
-  CellPolynomial<Dim, typename Lanes<Real>::Pack> c;
-  static_for<LaneGroup<Dim>::corner_rows>([&](auto r) {
+template <int Dim, class Real, class Device, class P>
+KOKKOS_FORCEINLINE_FUNCTION void coefficients_of(const LaneNodes<Dim, Real, Device>& nodes, int column,
+                                                 const LaneGroup<Dim>& group, CellPolynomial<Dim, P>& c) {
+  static_for<LaneGroup<Dim>::corner_rows>([&](auto r) VSB_UNROLLED {
     c[2 * r] = nodes.load(column, group.node[r]);
     c[2 * r + 1] = nodes.load(column, group.node[r] + 1);
   });
   coefficients_from_nodes<Dim>(c);
-  return c;
 }
 
 /// The sums of one layer: columns First, ..., First + Count - 1 of LaneNodes' lower and upper sums. The right
@@ -51,16 +49,16 @@ class LayerSums {
     next_x_ = group.x + 1;
     for (int r = 0; r < rows; ++r) next_node_[r] = group.node[r] + P::width;
   }
-  /// Adds what the moments of the present group come to at the nodes.
+  /// Adds what the moments of the present group come to at the nodes; they are turned in place.
   KOKKOS_FORCEINLINE_FUNCTION void add_moments(int column, const LaneGroup<Dim>& group,
-                                               CellPolynomial<Dim, P> m) {
+                                               CellPolynomial<Dim, P>& m) {
     nodes_from_moments<Dim>(m);
     add(column, group, m);
   }
   /// Adds to the nodes, numbered as the corners of multilinear.hpp.
   KOKKOS_FORCEINLINE_FUNCTION void add(int column, const LaneGroup<Dim>& group,
                                        const CellPolynomial<Dim, P>& at_node) {
-    static_for<rows>([&](auto r) {
+    static_for<rows>([&](auto r) VSB_UNROLLED {
       Real* to = row_of(column, r) + group.node[r];
       P& carried = carried_[column - First][r];
       (P::load(to) + at_node[2 * r] + shift_in(carried, at_node[2 * r + 1])).store(to);

@@ -29,14 +29,18 @@ struct LaneState {
 
 namespace detail {
 
-/// Calls work(sums), with cells that are cubes or not.
+/// Calls work(true or false as a type): whether cells are cubes.
 template <int Dim, class Real, class Device, class Work>
-void with_lane_sums(const LaneState<Dim, Real, Device>& s, const Work& work) {
-  const auto& m = s.memory;
+void with_cubic(const LaneState<Dim, Real, Device>& s, const Work& work) {
   if (s.cubic())
-    work(LaneSums<Dim, Real, Device, true>{m.lanes, m.grid, s.boundary.tractions});
+    work(std::true_type{});
   else
-    work(LaneSums<Dim, Real, Device, false>{m.lanes, m.grid, s.boundary.tractions});
+    work(std::false_type{});
+}
+
+template <int Dim, class Real, class Device>
+LoadedLanes<Dim, Real, Device> loaded_lanes(const LaneState<Dim, Real, Device>& s) {
+  return {s.memory.lanes, s.memory.grid, s.boundary.tractions};
 }
 
 template <class Exec>
@@ -50,10 +54,10 @@ OverLayers<Exec> over_layers(const Exec& exec, const LaneState<Dim, Real, Device
 /// Sweep A alone.
 template <class Exec, class Field, int Dim, class Real, class Device>
 void sum_lanes(const Exec& exec, const LaneState<Dim, Real, Device>& s, const Field& field) {
-  with_lane_sums(s, [&](const auto& sums) {
-    constexpr bool cubic = std::decay_t<decltype(sums)>::cubic;
+  with_cubic(s, [&](auto cubic) {
     Kokkos::parallel_for("vsb::sum_lanes", over_layers(exec, s),
-                         kernel::SumLanes<Dim, Real, Device, cubic, Field>{sums, s.memory.nodes, field});
+                         kernel::SumLanes<decltype(cubic)::value, Field, Dim, Real, Device>{
+                             loaded_lanes(s), s.memory.nodes, field});
   });
 }
 
@@ -96,16 +100,16 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
   Kokkos::parallel_for("vsb::update_lane_nodes", over_chunks,
                        kernel::UpdateLaneNodes<Dim, Real, Device>{
                            {m.nodes}, options.gravity, m.grid.inverse_spacing, options.damping, options.dt});
-  detail::with_lane_sums(s, [&](const auto& sums) {
-    constexpr bool cubic = std::decay_t<decltype(sums)>::cubic;
-    Kokkos::parallel_for("vsb::accelerate_lanes", detail::over_layers(exec, s),
-                         kernel::AccelerateLanes<Dim, Real, Device, cubic>{sums, m.nodes});
-    Kokkos::parallel_for("vsb::remap_lane_nodes", over_chunks,
-                         kernel::RemapLaneNodes<Dim, Real, Device>{
-                             {m.nodes}, options.dt * m.grid.inverse_spacing[0]});
-    Kokkos::parallel_for("vsb::move_lanes", detail::over_layers(exec, s),
-                         kernel::MoveLanes<Dim, Real, Device, cubic, Field, Material, Volume>{
-                             sums, m.nodes, next_virtual_stress, material, volume, m.leavers});
+  Kokkos::parallel_for("vsb::accelerate_lanes", detail::over_layers(exec, s),
+                       kernel::AccelerateLanes<Dim, Real, Device>{m.lanes, m.nodes});
+  Kokkos::parallel_for("vsb::remap_lane_nodes", over_chunks,
+                       kernel::RemapLaneNodes<Dim, Real, Device>{
+                           {m.nodes}, options.dt * m.grid.inverse_spacing[0]});
+  detail::with_cubic(s, [&](auto cubic) {
+    Kokkos::parallel_for(
+        "vsb::move_lanes", detail::over_layers(exec, s),
+        kernel::MoveLanes<decltype(cubic)::value, Field, Material, Volume, Dim, Real, Device>{
+            detail::loaded_lanes(s), m.nodes, next_virtual_stress, material, volume, m.leavers});
   });
   if (count_leavers(exec, m) == 0) return -1;
   if (take_in_leavers(exec, m, next_virtual_stress, s.boundary.tractions) > 0) {

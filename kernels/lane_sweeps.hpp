@@ -10,7 +10,7 @@
 /// The nodes bring dt a, dt v in cells and dt v* in cells, so that only sums are left for the particles.
 #pragma once
 
-#include <vsb/kernels/lane_sums.hpp>
+#include <vsb/kernels/lane_tractions.hpp>
 #include <vsb/physics/kinematics.hpp>
 
 namespace vsb {
@@ -18,103 +18,110 @@ namespace vsb {
 namespace kernel {
 
 /// Sweep A.
-template <int Dim, class Real, class Device, bool Cubic, class Field>
+template <bool Cubic, class Field, int Dim, class Real, class Device>
 struct SumLanes {
-  LaneSums<Dim, Real, Device, Cubic> sums;
+  LoadedLanes<Dim, Real, Device> on;
   LaneNodes<Dim, Real, Device> nodes;
   Field virtual_stress;
 
-  [[gnu::flatten]] KOKKOS_FUNCTION void operator()(int layer) const {
-    const auto& lanes = sums.lanes;
-    typename LaneSums<Dim, Real, Device, Cubic>::Sums of_layer(lanes, nodes, layer);
-    for (int g = lanes.layer_first(layer); g < lanes.layer_first(layer + 1); ++g) {
-      of_layer.begin(lanes.groups(g));
-      sums(lanes.groups(g), of_layer, virtual_stress);
+  KOKKOS_FUNCTION void operator()(int layer) const {
+    StepSums<Dim, Real, Device> sums(on.lanes, nodes, layer);
+    for (int g = on.lanes.layer_first(layer); g < on.lanes.layer_first(layer + 1); ++g) {
+      const auto& group = on.lanes.groups(g);
+      sums.begin(group);
+      sum_group_with<Cubic>(on, group, virtual_stress, sums);
     }
-    of_layer.end();
+    sums.end();
   }
 };
 
 /// Sweep B.
-template <int Dim, class Real, class Device, bool Cubic>
+template <int Dim, class Real, class Device>
 struct AccelerateLanes {
   using P = typename Lanes<Real>::Pack;
-  LaneSums<Dim, Real, Device, Cubic> sums;
+  using Momentum = LayerSums<1, Dim, Dim, Real, Device>;
+  CellLanes<Dim, Real, Device> lanes;
   LaneNodes<Dim, Real, Device> nodes;
 
-  [[gnu::flatten]] KOKKOS_FUNCTION void operator()(int layer) const {
-    const auto lanes = sums.lanes;
-    LayerSums<1, Dim, Dim, Real, Device> of_layer(lanes, nodes, layer);
+  KOKKOS_FUNCTION void operator()(int layer) const {
+    Momentum sums(lanes, nodes, layer);
     for (int g = lanes.layer_first(layer); g < lanes.layer_first(layer + 1); ++g) {
       const auto& group = lanes.groups(g);
-      of_layer.begin(group);
-      CellPolynomial<Dim, P> dv[Dim];
-      static_for<Dim>([&](auto i) { dv[i] = coefficients_of(nodes, nodes.increment_column + i, group); });
-      for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
-        const auto xi = lanes.load_xi(entry);
-        static_for<Dim>([&](auto i) {
-          lanes.store(lanes.velocity_column + i, entry,
-                      lanes.load(lanes.velocity_column + i, entry) + value_at<Dim>(dv[i], xi));
-        });
-      }
-      sums.momentum(group, of_layer);
+      sums.begin(group);
+      accelerate(group, sums);
     }
-    of_layer.end();
+    sums.end();
+  }
+  [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void accelerate(const LaneGroup<Dim>& group,
+                                                                  Momentum& sums) const {
+    CellPolynomial<Dim, P> dv[Dim], p[Dim];
+    static_for<Dim>([&](auto i) VSB_UNROLLED { coefficients_of(nodes, nodes.increment_column + i, group, dv[i]); });
+    for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
+      const auto xi = lanes.load_xi(entry);
+      static_for<Dim>([&](auto i) VSB_UNROLLED {
+        const P v = lanes.load(lanes.velocity_column + i, entry);
+        lanes.store(lanes.velocity_column + i, entry, v + value_at<Dim>(dv[i], xi));
+      });
+    }
+    lane_sums::momentum(lanes, group, p);
+    static_for<Dim>([&](auto i) VSB_UNROLLED { sums.add_moments(1 + i, group, p[i]); });
   }
 };
 
 /// Sweep C, and A of the next step.
-template <int Dim, class Real, class Device, bool Cubic, class Field, class Material, class Volume>
+template <bool Cubic, class Field, class Material, class Volume, int Dim, class Real, class Device>
 struct MoveLanes {
   using P = typename Lanes<Real>::Pack;
-  LaneSums<Dim, Real, Device, Cubic> sums;
+  LoadedLanes<Dim, Real, Device> on;
   LaneNodes<Dim, Real, Device> nodes;
   Field virtual_stress;
   Material material;
   Volume volume;
   Leavers<Dim, Real, Device> leavers;
 
-  [[gnu::flatten]] KOKKOS_FUNCTION void operator()(int layer) const {
-    const auto lanes = sums.lanes;
-    typename LaneSums<Dim, Real, Device, Cubic>::Sums of_layer(lanes, nodes, layer);
+  KOKKOS_FUNCTION void operator()(int layer) const {
+    StepSums<Dim, Real, Device> sums(on.lanes, nodes, layer);
     leavers.count(layer) = 0;
-    for (int g = lanes.layer_first(layer); g < lanes.layer_first(layer + 1); ++g) {
-      const auto& group = lanes.groups(g);
-      move(lanes, group, layer);
-      of_layer.begin(group);
-      sums(group, of_layer, virtual_stress);
+    for (int g = on.lanes.layer_first(layer); g < on.lanes.layer_first(layer + 1); ++g) {
+      const auto& group = on.lanes.groups(g);
+      move(group, layer);
+      sums.begin(group);
+      sum_group_with<Cubic>(on, group, virtual_stress, sums);
     }
-    of_layer.end();
+    sums.end();
   }
 
-  KOKKOS_FORCEINLINE_FUNCTION void move(const CellLanes<Dim, Real, Device>& lanes,
-                                        const LaneGroup<Dim>& group, int layer) const {
+  [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void move(const LaneGroup<Dim>& group, int layer) const {
+    const auto& lanes = on.lanes;
     CellPolynomial<Dim, P> dx[Dim], u[Dim];
-    static_for<Dim>([&](auto i) {
-      dx[i] = coefficients_of(nodes, nodes.displacement_column + i, group);
-      u[i] = coefficients_of(nodes, nodes.remapped_column + i, group);
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
+      coefficients_of(nodes, nodes.displacement_column + i, group, dx[i]);
+      coefficients_of(nodes, nodes.remapped_column + i, group, u[i]);
     });
     for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
       const auto xi = lanes.load_xi(entry);
       Matrix<Dim, P> L;  // dt L
-      static_for<Dim>([&](auto i) {
-        static_for<Dim>([&](auto j) {
+      static_for<Dim>([&](auto i) VSB_UNROLLED {
+        static_for<Dim>([&](auto j) VSB_UNROLLED {
           L(i, j) = derivative_at<j, Dim>(u[i], xi);
-          if constexpr (!Cubic) L(i, j) *= P(sums.grid.inverse_spacing[j] * sums.grid.spacing[0]);
+          if constexpr (!Cubic) L(i, j) *= P(on.grid.inverse_spacing[j] * on.grid.spacing[0]);
         });
       });
       advance(lanes, entry, L);
-      lanes.store(lanes.volume_column, entry,
-                  volume(lanes.load(lanes.volume_column, entry), L, P(Real(1))));
+      const P V = lanes.load(lanes.volume_column, entry);
+      lanes.store(lanes.volume_column, entry, volume(V, L, P(1)));
       Vector<Dim, P> moved;
-      static_for<Dim>([&](auto i) { moved[i] = xi[i] + value_at<Dim>(dx[i], xi); });
+      static_for<Dim>([&](auto i) VSB_UNROLLED { moved[i] = xi[i] + value_at<Dim>(dx[i], xi); });
       lanes.store_row(lanes.xi_column, entry, moved);
-      auto inside = (moved[0] >= P(Real(0))) & (moved[0] < P(Real(1)));
-      static_for<Dim>([&](auto i) {
-        if constexpr (i > 0) inside = inside & (moved[i] >= P(Real(0))) & (moved[i] < P(Real(1)));
-      });
-      if (any(!inside)) leave(lanes, group, layer, entry);
+      if (!all_in_unit_cube(moved)) leave(group, layer, entry);
     }
+  }
+  KOKKOS_FORCEINLINE_FUNCTION static bool all_in_unit_cube(const Vector<Dim, P>& xi) {
+    auto inside = (xi[0] >= P(0)) & (xi[0] < P(1));
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
+      if constexpr (i > 0) inside = inside & (xi[i] >= P(0)) & (xi[i] < P(1));
+    });
+    return !any(!inside);
   }
 
   KOKKOS_FORCEINLINE_FUNCTION void advance(const CellLanes<Dim, Real, Device>& lanes, size_t entry,
@@ -122,7 +129,7 @@ struct MoveLanes {
     constexpr int remembered = Material::template state_size<Dim>();
     const auto sigma = lanes.load_stress(entry);
     if constexpr (remembered == 0) {
-      lanes.store_row(lanes.stress_column, entry, material.advance(sigma, L, P(Real(1))));
+      lanes.store_row(lanes.stress_column, entry, material.advance(sigma, L, P(1)));
     } else {
       // Lane by lane: such materials branch.
       for (int l = 0; l < P::width; ++l) {
@@ -141,11 +148,8 @@ struct MoveLanes {
   }
 
   /// Takes the particles of a slot that left their cell to the layer's list.
-#if defined(__GNUC__) && !defined(__CUDACC__)
-  __attribute__((noinline))
-#endif
-  KOKKOS_FUNCTION void leave(const CellLanes<Dim, Real, Device>& lanes, const LaneGroup<Dim>& group, int layer,
-                             size_t entry) const {
+  [[gnu::noinline]] KOKKOS_FUNCTION void leave(const LaneGroup<Dim>& group, int layer, size_t entry) const {
+    const auto& lanes = on.lanes;
     for (int l = 0; l < P::width; ++l) {
       const size_t e = entry + static_cast<size_t>(l);
       if (lanes.id(e) < 0) continue;
@@ -166,10 +170,10 @@ struct MoveLanes {
     constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
     bool out = false;
     for (int i = 0; i < Dim; ++i) {
-      const Real round_off = 16 * static_cast<Real>(sums.grid.cells[i]) * epsilon;
+      const Real round_off = 16 * static_cast<Real>(on.grid.cells[i]) * epsilon;
       if (xi[i] >= Real(0) && xi[i] < Real(1)) continue;
       if (cell[i] == 0 && xi[i] < Real(0) && xi[i] >= -round_off) continue;
-      if (cell[i] == sums.grid.cells[i] - 1 && xi[i] >= Real(1) && xi[i] <= Real(1) + round_off) continue;
+      if (cell[i] == on.grid.cells[i] - 1 && xi[i] >= Real(1) && xi[i] <= Real(1) + round_off) continue;
       out = true;
       const Real whole = math::floor(xi[i]);
       if (!(math::abs(whole) < Real(1 << 20))) {

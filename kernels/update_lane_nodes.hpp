@@ -41,18 +41,18 @@ template <int Dim, class Real, class Device>
 struct UpdateLaneNodes : LaneNodeRows<Dim, Real, Device> {
   using Base = LaneNodeRows<Dim, Real, Device>;
   using typename Base::P;
+  using Base::nodes;
   Vector<Dim, Real> gravity;          ///< m/s^2
   Vector<Dim, Real> inverse_spacing;  ///< 1/m
   Real damping, dt;
 
   KOKKOS_FUNCTION void operator()(int chunk) const {
     const int node = chunk * P::width;
-    const auto& nodes = this->nodes;
     const bool fixed = this->any_fixed(node);
     const P m = this->sum(0, node);
     const P inverse_mass = math::select(m > P(Real(0)), P(Real(1)) / m, P(Real(0)));
     inverse_mass.store(nodes.at(nodes.inverse_mass_column, node));
-    static_for<Dim>([&](auto i) {
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
       const P v = this->sum(1 + i, node) * inverse_mass;
       const P f = this->sum(1 + Dim + i, node) + m * P(gravity[i]);
       P dv = cundall_damped(f, v, P(damping)) * inverse_mass * P(dt);
@@ -71,14 +71,14 @@ template <int Dim, class Real, class Device>
 struct RemapLaneNodes : LaneNodeRows<Dim, Real, Device> {
   using Base = LaneNodeRows<Dim, Real, Device>;
   using typename Base::P;
+  using Base::nodes;
   Real factor;  ///< dt / h_0
 
   KOKKOS_FUNCTION void operator()(int chunk) const {
     const int node = chunk * P::width;
-    const auto& nodes = this->nodes;
     const bool fixed = this->any_fixed(node);
     const P scale = nodes.load(nodes.inverse_mass_column, node) * P(factor);
-    static_for<Dim>([&](auto i) {
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
       P u = this->sum(1 + i, node) * scale;
       if (fixed) u = this->free_component(u, node, i);
       u.store(nodes.at(nodes.remapped_column + i, node));

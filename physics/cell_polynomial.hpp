@@ -21,8 +21,8 @@ using CellPolynomial = Vector<(1 << Dim), T>;
 /// Nodal values f_a, a as in multilinear.hpp, to coefficients, in place.
 template <int Dim, class T>
 KOKKOS_FORCEINLINE_FUNCTION void coefficients_from_nodes(CellPolynomial<Dim, T>& f) {
-  static_for<Dim>([&](auto i) {
-    static_for<(1 << Dim)>([&](auto a) {
+  static_for<Dim>([&](auto i) VSB_UNROLLED {
+    static_for<(1 << Dim)>([&](auto a) VSB_UNROLLED {
       if constexpr (a >> i & 1) f[a] = f[a] - f[a ^ (1 << i)];
     });
   });
@@ -31,8 +31,8 @@ KOKKOS_FORCEINLINE_FUNCTION void coefficients_from_nodes(CellPolynomial<Dim, T>&
 /// Moments to sums at the nodes, in place.
 template <int Dim, class T>
 KOKKOS_FORCEINLINE_FUNCTION void nodes_from_moments(CellPolynomial<Dim, T>& m) {
-  static_for<Dim>([&](auto i) {
-    static_for<(1 << Dim)>([&](auto a) {
+  static_for<Dim>([&](auto i) VSB_UNROLLED {
+    static_for<(1 << Dim)>([&](auto a) VSB_UNROLLED {
       if constexpr ((a >> i & 1) == 0) m[a] = m[a] - m[a | (1 << i)];
     });
   });
@@ -70,9 +70,9 @@ template <int Dim, class T>
 KOKKOS_FORCEINLINE_FUNCTION CellPolynomial<Dim, T> monomials(const Vector<Dim, T>& xi) {
   CellPolynomial<Dim, T> q;
   q[0] = T(1);
-  static_for<Dim>([&](auto i) {
+  static_for<Dim>([&](auto i) VSB_UNROLLED {
     q[1 << i] = xi[i];
-    static_for<(1 << i)>([&](auto k) {
+    static_for<(1 << i)>([&](auto k) VSB_UNROLLED {
       if constexpr (k > 0) q[k | (1 << i)] = q[k] * xi[i];
     });
   });
@@ -84,10 +84,10 @@ template <int Dim, class T>
 KOKKOS_FORCEINLINE_FUNCTION void add_moments(CellPolynomial<Dim, T>& m, T w, const Vector<Dim, T>& xi) {
   Vector<(1 << (Dim - 1)), T> wq;  // over all directions but the last
   wq[0] = w;
-  static_for<Dim - 1>([&](auto i) {
-    static_for<(1 << i)>([&](auto k) { wq[k | (1 << i)] = wq[k] * xi[i]; });
+  static_for<Dim - 1>([&](auto i) VSB_UNROLLED {
+    static_for<(1 << i)>([&](auto k) VSB_UNROLLED { wq[k | (1 << i)] = wq[k] * xi[i]; });
   });
-  static_for<(1 << (Dim - 1))>([&](auto k) {
+  static_for<(1 << (Dim - 1))>([&](auto k) VSB_UNROLLED {
     m[k] += wq[k];
     m[k | (1 << (Dim - 1))] += wq[k] * xi[Dim - 1];
   });
@@ -98,7 +98,7 @@ template <int Dim, class T>
 KOKKOS_FORCEINLINE_FUNCTION void add_moments_of(CellPolynomial<Dim, T>& m, T w,
                                                 const CellPolynomial<Dim, T>& q) {
   m[0] += w;
-  static_for<(1 << Dim)>([&](auto k) {
+  static_for<(1 << Dim)>([&](auto k) VSB_UNROLLED {
     if constexpr (k > 0) m[k] += w * q[k];
   });
 }
@@ -107,8 +107,8 @@ KOKKOS_FORCEINLINE_FUNCTION void add_moments_of(CellPolynomial<Dim, T>& m, T w,
 template <int Dim, class T>
 KOKKOS_FORCEINLINE_FUNCTION void add_gradient_moments(CellPolynomial<Dim, T>& m, const Vector<Dim, T>& w,
                                                       const CellPolynomial<Dim, T>& q) {
-  static_for<(1 << Dim)>([&](auto k) {
-    static_for<Dim>([&](auto i) {
+  static_for<(1 << Dim)>([&](auto k) VSB_UNROLLED {
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
       if constexpr (k == (1 << i))
         m[k] += w[i];
       else if constexpr (k >> i & 1)
@@ -117,14 +117,29 @@ KOKKOS_FORCEINLINE_FUNCTION void add_gradient_moments(CellPolynomial<Dim, T>& m,
   });
 }
 
-/// The moments of w dq_k/dxi_i from those of w q_k, which need no m_k of all directions: sums over particles
-/// of a constant weight's gradients without another look at the particles.
-template <int i, int Dim, class T>
-KOKKOS_FORCEINLINE_FUNCTION CellPolynomial<Dim, T> gradient_moments(const CellPolynomial<Dim, T>& m) {
+/// The moments sum_p w_p (c . grad q_k) of a constant c from the moments m_k = sum_p w_p q_k, which need not
+/// include that of all directions: another sum over the same particles without another look at them.
+template <int Dim, class T>
+KOKKOS_FORCEINLINE_FUNCTION CellPolynomial<Dim, T> gradient_moments(const Vector<Dim, T>& c,
+                                                                    const CellPolynomial<Dim, T>& m) {
   CellPolynomial<Dim, T> g;
-  static_for<(1 << Dim)>([&](auto k) {
+  static_for<(1 << Dim)>([&](auto k) VSB_UNROLLED {
+    g[k] = T(0);
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
+      if constexpr (k >> i & 1) g[k] += c[i] * m[k ^ (1 << i)];
+    });
+  });
+  return g;
+}
+
+/// The same for c along direction i.
+template <int i, int Dim, class T>
+KOKKOS_FORCEINLINE_FUNCTION CellPolynomial<Dim, T> gradient_moments_along(T c,
+                                                                          const CellPolynomial<Dim, T>& m) {
+  CellPolynomial<Dim, T> g;
+  static_for<(1 << Dim)>([&](auto k) VSB_UNROLLED {
     if constexpr (k >> i & 1)
-      g[k] = m[k ^ (1 << i)];
+      g[k] = c * m[k ^ (1 << i)];
     else
       g[k] = T(0);
   });

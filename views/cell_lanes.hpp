@@ -120,19 +120,19 @@ struct CellLanes {
   template <int N>
   KOKKOS_FORCEINLINE_FUNCTION Vector<N, P> load_row(int column, size_t entry) const {
     Vector<N, P> v;
-    static_for<N>([&](auto i) { v[i] = load(column + i, entry); });
+    static_for<N>([&](auto i) VSB_UNROLLED { v[i] = load(column + i, entry); });
     return v;
   }
   template <class Row>
   KOKKOS_FORCEINLINE_FUNCTION void store_row(int column, size_t entry, const Row& v) const {
-    static_for<Row::size>([&](auto i) { store(column + i, entry, v[i]); });
+    static_for<Row::size>([&](auto i) VSB_UNROLLED { store(column + i, entry, v[i]); });
   }
   KOKKOS_FORCEINLINE_FUNCTION Vector<Dim, P> load_xi(size_t entry) const {
     return load_row<Dim>(xi_column, entry);
   }
   KOKKOS_FORCEINLINE_FUNCTION SymmetricTensor<Dim, P> load_stress(size_t entry) const {
     SymmetricTensor<Dim, P> s;
-    static_for<stress_size>([&](auto c) { s[c] = load(stress_column + c, entry); });
+    static_for<stress_size>([&](auto c) VSB_UNROLLED { s[c] = load(stress_column + c, entry); });
     return s;
   }
   /// Makes an entry a ghost.

@@ -158,6 +158,19 @@ KOKKOS_FORCEINLINE_FUNCTION Pack<T, W> shift_in(Pack<T, W> before, Pack<T, W> p)
   return detail::shift_in(before, p, std::make_integer_sequence<int, W>{});
 }
 
+/// p in the lanes whose bit is set, zero in the others.
+template <class T, int W>
+KOKKOS_FORCEINLINE_FUNCTION Pack<T, W> keep_lanes(std::uint64_t bits, Pack<T, W> p) {
+#if defined(VSB_PACK_FMA) && defined(__AVX512VL__)
+  if constexpr (sizeof(T) == 8 && W == 4)
+    return typename Pack<T, W>::Native(_mm256_maskz_mov_pd(static_cast<__mmask8>(bits), p.v));
+  if constexpr (sizeof(T) == 4 && W == 8)
+    return typename Pack<T, W>::Native(_mm256_maskz_mov_ps(static_cast<__mmask8>(bits), p.v));
+#endif
+  const auto mask = PackMask<T, W>::from_bits(bits).v;
+  return typename Pack<T, W>::Native(mask ? p.v : typename Pack<T, W>::Native{});
+}
+
 namespace math {
 /// a where the condition holds, else b.
 template <class T>

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// The sums of a group of cell lanes with loaded nodes: those of kernels/lane_sums.hpp, and at the nodes where
+/// a traction acts its virtual stress (Eqs. 27, 28), sum_p V_p (sbar . grad N_a + fbar N_a).
+///
+/// A uniform sbar needs only the volume moments sum_p V_p q_k; where a cell has all its nodes loaded or none,
+/// not even these: sigma - sbar takes the place of sigma. Any other field is evaluated at the particles.
+#pragma once
+
+#include <vsb/kernels/lane_sums.hpp>
+#include <vsb/physics/uniform_grid.hpp>
+#include <vsb/physics/virtual_stress.hpp>
+
+namespace vsb {
+
+/// What a loaded group has to know beside its particles.
+template <int Dim, class Real, class Device>
+struct LoadedLanes {
+  CellLanes<Dim, Real, Device> lanes;
+  UniformGrid<Dim, Real> grid;
+  Kokkos::View<const TractionMask*, Device> tractions;  ///< [node of the lanes]: those that act there
+};
+
+namespace lane_sums {
+
+/// Calls work(mask, bits) for every set of tractions that some node of the group has; bits[r] >> l & 1 tells
+/// whether the node l of corner row r has it.
+template <int Dim, class Real, class Device, class Work>
+KOKKOS_FORCEINLINE_FUNCTION void for_each_mask(const LoadedLanes<Dim, Real, Device>& on,
+                                               const LaneGroup<Dim>& group, const Work& work) {
+  constexpr int rows = LaneGroup<Dim>::corner_rows, width = Lanes<Real>::width;
+  if (group.load != GroupLoad::mixed) {
+    work(group.tractions, group.loaded);
+    return;
+  }
+  std::uint64_t left[rows];
+  for (int r = 0; r < rows; ++r) left[r] = group.loaded[r];
+  while (true) {
+    TractionMask mask = 0;
+    for (int r = 0; r < rows && mask == 0; ++r)
+      for (int l = 0; l <= width && mask == 0; ++l)
+        if (left[r] >> l & 1) mask = on.tractions(group.node[r] + l);
+    if (mask == 0) return;
+    std::uint64_t bits[rows] = {};
+    for (int r = 0; r < rows; ++r) {
+      for (int l = 0; l <= width; ++l)
+        if ((left[r] >> l & 1) && on.tractions(group.node[r] + l) == mask) bits[r] |= std::uint64_t(1) << l;
+      left[r] &= ~bits[r];
+    }
+    work(mask, bits);
+  }
+}
+
+/// Adds t_a to f_a at the nodes whose bit is set; both are at the nodes.
+template <int Dim, class P>
+KOKKOS_FORCEINLINE_FUNCTION void add_where(const std::uint64_t* bits, const CellPolynomial<Dim, P>& t,
+                                           CellPolynomial<Dim, P>& f) {
+  static_for<f.size>([&](auto a) VSB_UNROLLED { f[a] += keep_lanes(bits[a >> 1] >> (a & 1), t[a]); });
+}
+
+/// sum_p V_p sbar . grad N_a from the volume moments, component by component, where bits are set.
+template <int Dim, class P, class Real>
+KOKKOS_FORCEINLINE_FUNCTION void add_uniform(const SymmetricTensor<Dim, Real>& bar,
+                                             const Vector<Dim, Real>& inverse_spacing,
+                                             const CellPolynomial<Dim, P>& volume, const std::uint64_t* bits,
+                                             CellPolynomial<Dim, P> (&f)[Dim]) {
+  bool diagonal = true;  // as a pressure is
+  for (int c = 3; c < bar.size; ++c) diagonal = diagonal && bar[c] == Real(0);
+  static_for<Dim>([&](auto a) VSB_UNROLLED {
+    if (diagonal) {
+      auto t = gradient_moments_along<a, Dim>(P(bar[a] * inverse_spacing[a]), volume);
+      nodes_from_moments<Dim>(t);
+      add_where<Dim>(bits, t, f[a]);
+    } else {
+      Vector<Dim, P> c;
+      static_for<Dim>([&](auto i) VSB_UNROLLED { c[i] = P(bar[symmetric_index(a, i)] * inverse_spacing[i]); });
+      auto t = gradient_moments<Dim>(c, volume);
+      nodes_from_moments<Dim>(t);
+      add_where<Dim>(bits, t, f[a]);
+    }
+  });
+}
+
+/// sum_p V_p (sbar(x_p) . grad N_a + fbar(x_p) N_a) at the nodes, particle by particle.
+template <class Field, int Dim, class Real, class Device, class P>
+KOKKOS_FORCEINLINE_FUNCTION void function_traction(const LoadedLanes<Dim, Real, Device>& on,
+                                                   const LaneGroup<Dim>& group, const Field& field,
+                                                   TractionMask tractions, CellPolynomial<Dim, P> (&t)[Dim]) {
+  const auto& lanes = on.lanes;
+  static_for<Dim>([&](auto i) VSB_UNROLLED { set_zero<Dim>(t[i]); });
+  for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
+    const auto xi = lanes.load_xi(entry);
+    const auto q = monomials<Dim>(xi);
+    const P V = lanes.load(lanes.volume_column, entry);
+    VirtualStressValue<Dim, P> bar;
+    for (int l = 0; l < P::width; ++l) {
+      Vector<Dim, Real> xi_l;
+      for (int i = 0; i < Dim; ++i) xi_l[i] = xi[i][l];
+      const auto at = field.at(on.grid.map(lanes.cell(group, l), xi_l).x, tractions);
+      for (int c = 0; c < bar.stress.size; ++c) bar.stress[c].set(l, at.stress[c]);
+      for (int i = 0; i < Dim; ++i) bar.divergence[i].set(l, at.divergence[i]);
+    }
+    static_for<Dim>([&](auto a) VSB_UNROLLED {
+      Vector<Dim, P> w;
+      static_for<Dim>([&](auto i) VSB_UNROLLED {
+        w[i] = bar.stress[symmetric_index(a, i)] * V * P(on.grid.inverse_spacing[i]);
+      });
+      add_gradient_moments<Dim>(t[a], w, q);
+      add_moments_of<Dim>(t[a], P(bar.divergence[a] * V), q);
+    });
+  }
+  static_for<Dim>([&](auto a) VSB_UNROLLED { nodes_from_moments<Dim>(t[a]); });
+}
+
+}  // namespace lane_sums
+
+/// Everything that a group gives to nodes, all of a cell loaded or none, by a uniform field.
+template <bool Cubic, class Field, int Dim, class Real, class Device>
+[[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void sum_whole_group(const LoadedLanes<Dim, Real, Device>& on,
+                                                                     const LaneGroup<Dim>& group,
+                                                                     const Field& field,
+                                                                     StepSums<Dim, Real, Device>& sums) {
+  using namespace lane_sums;
+  using P = typename Lanes<Real>::Pack;
+  const auto& lanes = on.lanes;
+  add_mass_and_momentum(lanes, group, sums);
+  const auto bar = field.at(Vector<Dim, Real>::zero(), group.tractions).stress;
+  SymmetricTensor<Dim, P> in_lane;
+  static_for<in_lane.size>([&](auto c) VSB_UNROLLED { in_lane[c] = keep_lanes(group.loaded[0], P(bar[c])); });
+  CellPolynomial<Dim, P> f[Dim];
+  force<Cubic>(lanes, group, on.grid.inverse_spacing,
+               [&](size_t entry) { return lanes.load_stress(entry) - in_lane; }, f);
+  static_for<Dim>([&](auto i) VSB_UNROLLED { sums.add_moments(1 + Dim + i, group, f[i]); });
+}
+
+/// The same with nodes loaded in any way, by any field.
+template <bool Cubic, class Field, int Dim, class Real, class Device>
+[[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void sum_partly_loaded_group(
+    const LoadedLanes<Dim, Real, Device>& on, const LaneGroup<Dim>& group, const Field& field,
+    StepSums<Dim, Real, Device>& sums) {
+  using namespace lane_sums;
+  using P = typename Lanes<Real>::Pack;
+  const auto& lanes = on.lanes;
+  add_mass_and_momentum(lanes, group, sums);
+  CellPolynomial<Dim, P> f[Dim];
+  force<Cubic>(lanes, group, on.grid.inverse_spacing, [&](size_t entry) { return lanes.load_stress(entry); },
+               f);
+  static_for<Dim>([&](auto i) VSB_UNROLLED { nodes_from_moments<Dim>(f[i]); });
+  if constexpr (Field::uniform) {
+    CellPolynomial<Dim, P> volume;
+    moments_of(lanes, group, lanes.volume_column, volume);
+    for_each_mask(on, group, [&](TractionMask tractions, const std::uint64_t* bits) {
+      add_uniform(field.at(Vector<Dim, Real>::zero(), tractions).stress, on.grid.inverse_spacing, volume,
+                  bits, f);
+    });
+  } else {
+    for_each_mask(on, group, [&](TractionMask tractions, const std::uint64_t* bits) {
+      CellPolynomial<Dim, P> t[Dim];
+      function_traction(on, group, field, tractions, t);
+      static_for<Dim>([&](auto a) VSB_UNROLLED { add_where<Dim>(bits, t[a], f[a]); });
+    });
+  }
+  static_for<Dim>([&](auto i) VSB_UNROLLED { sums.add(1 + Dim + i, group, f[i]); });
+}
+
+/// Everything that a group gives to its nodes.
+template <bool Cubic, class Field, int Dim, class Real, class Device>
+KOKKOS_FORCEINLINE_FUNCTION void sum_group_with(const LoadedLanes<Dim, Real, Device>& on,
+                                                const LaneGroup<Dim>& group, const Field& field,
+                                                StepSums<Dim, Real, Device>& sums) {
+  if constexpr (Field::loaded) {
+    if (Field::uniform && group.load == GroupLoad::whole) {
+      sum_whole_group<Cubic>(on, group, field, sums);
+      return;
+    }
+    if (group.load != GroupLoad::none) {
+      sum_partly_loaded_group<Cubic>(on, group, field, sums);
+      return;
+    }
+  }
+  sum_group<Cubic>(on.lanes, group, on.grid.inverse_spacing, sums);
+}
+
+}  // namespace vsb
