@@ -187,6 +187,30 @@ class Resultant(StudyTest):
         self.assertEqual(len(some(part)), 8)
         self.assertEqual(some(table), some(part))
 
+    def test_shape_lattice_and_grid_lie_anywhere(self):
+        _, table = self.study(FEW.replace("count = 6", "count = 20"))
+        scenes = [tomllib.loads(self.scene_of(row)[0]) for row in table
+                  if row["series"] == "all" and row["figure"] == "net_force_share"]
+        drawn = {"grid": [], "lattice": [], "shape": [], "per cell": []}
+        kinds, counts = set(), set()
+        for scene in scenes:
+            body, lower = scene["body"][0], np.array(scene["grid"]["lower"])
+            lattice = body["lattice"]["uniform"]
+            parts = primitives(body["shape"])
+            kind, first = parts[0]
+            middle = first["center"] if kind == "ball" else np.add(first["lower"], first["upper"]) / 2
+            drawn["grid"] += list(lower % 1)
+            drawn["lattice"] += list((np.array(lattice["origin"]) - lower) / np.array(lattice["spacing"]))
+            drawn["shape"] += list(middle - lower - (np.array(scene["grid"]["upper"]) - lower) / 2 + 0.5)
+            drawn["per cell"].append((1 / lattice["spacing"][0] - 2) / 1.2)
+            kinds |= {kind for kind, _ in parts}
+            counts.add(len(parts))
+        for name, numbers in drawn.items():  # uniform in [0, 1): 20 or 40 of them, at 4 standard deviations of their mean
+            self.assertTrue(all(0 <= x <= 1 for x in numbers), name)
+            self.assertAlmostEqual(np.mean(numbers), 0.5, delta=4 * math.sqrt(1 / 12 / len(numbers)), msg=name)
+            self.assertGreater(np.ptp(numbers), 0.7, name)
+        self.assertEqual((kinds, counts), ({"ball", "box"}, {2, 3, 4}))
+
     def test_the_study_goes_on(self):
         cut = FEW[:FEW.rindex("[[series]]")]
         self.study(cut)
