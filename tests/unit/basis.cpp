@@ -17,6 +17,8 @@ TEST_CASE("nodes and cells are numbered along x first") {
   CHECK(grid.node_stride(1) == 4);
   CHECK(grid.node_stride(2) == 12);
   CHECK(grid.node_index({{1, 2, 3}}) == 1 + 2 * 4 + 3 * 12);
+  CHECK(grid.cell_index({{2, 1, 3}}) == 2 + 1 * 3 + 3 * 6);
+  CHECK(grid.row_index({{2, 1, 3}}) == 1 + 3 * 2);
   const auto x = grid.node_position(1 + 2 * 4 + 3 * 12);
   CHECK(x[0] == 1);
   CHECK(x[1] == 14);
@@ -25,6 +27,7 @@ TEST_CASE("nodes and cells are numbered along x first") {
   const UniformGrid<1, float> line({{-1}}, {{0.5f}}, {{7}});
   CHECK(line.node_count() == 8);
   CHECK(line.node_position(7)[0] == 2.5f);
+  CHECK(line.row_index({{6}}) == 0);
 }
 
 TEMPLATE_TEST_CASE_SIG("node numbers and node coordinates are inverse", "", ((int Dim), Dim), 1, 2, 3) {
