@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
@@ -347,6 +348,22 @@ class StudyReader {
     return place;
   }
 
+  /// The expectation under the only one of three keys that is there; returns which.
+  static size_t read_one_of(TableReader& r, const std::array<const char*, 3>& kinds, Inherited inherited,
+                            Expectation& expectation) {
+    inherited.source = r.text("source", inherited.source);
+    size_t which = 0, found = 0;
+    for (size_t k = 0; k < kinds.size(); ++k) {
+      if (!r.node(kinds[k])) continue;
+      ++found;
+      which = k;
+      expectation = read_expectation(r, kinds[k], inherited);
+    }
+    if (found != 1)
+      r.missing(kinds[0], fmt::format("exactly one of {}, {} and {}", kinds[0], kinds[1], kinds[2]));
+    return which;
+  }
+
   void read_relation(TableReader& r, const Inherited& study) {
     Relation relation;
     r.allow_only({"title", "figure", "first", "second", "source", "ratio", "difference", "rate"});
@@ -354,17 +371,8 @@ class StudyReader {
     relation.figure = r.text("figure");
     relation.first = read_place_of(r, "first", relation.figure);
     relation.second = read_place_of(r, "second", relation.figure);
-    Inherited inherited = study;
-    inherited.source = r.text("source", study.source);
-    const std::vector<std::string> kinds = {"ratio", "difference", "rate"};
-    size_t found = 0;
-    for (size_t k = 0; k < kinds.size(); ++k) {
-      if (!r.node(kinds[k])) continue;
-      ++found;
-      relation.kind = static_cast<Relation::Kind>(k);
-      relation.expectation = read_expectation(r, kinds[k], inherited);
-    }
-    if (found != 1) r.missing("ratio", "exactly one of ratio, difference and rate");
+    relation.kind = static_cast<Relation::Kind>(
+        read_one_of(r, {"ratio", "difference", "rate"}, study, relation.expectation));
     if (relation.kind == Relation::Kind::rate && !study_.axis.log)
       r.fail(*r.source().get("rate"), "rate", "rates need a logarithmic axis (axis.log = true)");
     r.finish();
@@ -381,28 +389,26 @@ class StudyReader {
     for (const auto& c : study_.series[statistic.series].cases)
       if (c.expected_failure.empty())
         check_figure(r, *r.source().get("figure"), statistic.figure, figure_names(*c.scene, c.solution));
-    Inherited inherited = study;
-    inherited.source = r.text("source", study.source);
-    const std::vector<std::string> kinds = {"largest", "smallest", "median"};
-    size_t found = 0;
-    for (size_t k = 0; k < kinds.size(); ++k) {
-      if (!r.node(kinds[k])) continue;
-      ++found;
-      statistic.kind = static_cast<Statistic::Kind>(k);
-      statistic.expectation = read_expectation(r, kinds[k], inherited);
-    }
-    if (found != 1) r.missing("largest", "exactly one of largest, smallest and median");
+    statistic.kind = static_cast<Statistic::Kind>(
+        read_one_of(r, {"largest", "smallest", "median"}, study, statistic.expectation));
     r.finish();
     study_.statistics.push_back(std::move(statistic));
   }
 
-  void read_chart(TableReader r) {
-    std::vector<std::string> known;
+  /// What names_of(case) gives for all cases with a scene, each name once.
+  template <class NamesOf>
+  std::vector<std::string> names_of_cases(const NamesOf& names_of) const {
+    std::vector<std::string> names;
     for (const auto& series : study_.series)
       for (const auto& c : series.cases)
         if (c.scene)
-          for (const auto& name : figure_names(*c.scene, c.solution))
-            if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
+          for (const auto& name : names_of(c))
+            if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    return names;
+  }
+
+  void read_chart(TableReader r) {
+    const auto known = names_of_cases([](const StudyCase& c) { return figure_names(*c.scene, c.solution); });
     Chart chart;
     r.allow_only({"figures", "distribution", "log"});
     chart.figures = r.texts("figures", known);
@@ -413,12 +419,7 @@ class StudyReader {
   }
 
   void read_reach(TableReader r) {
-    std::vector<std::string> known;
-    for (const auto& series : study_.series)
-      for (const auto& c : series.cases)
-        if (c.scene)
-          for (const auto& name : error_names(*c.scene))
-            if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
+    const auto known = names_of_cases([](const StudyCase& c) { return error_names(*c.scene); });
     Reach reach;
     r.allow_only({"figures", "level"});
     reach.figures = r.texts("figures", known);
