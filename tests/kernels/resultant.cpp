@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// The net force and torque of a uniform pressure on 200 random closed bodies, at the boundary nodes and at
-/// all of them. A body in five has none at the boundary nodes either: there the cells on either side of the
+/// all of them. Some bodies have none at the boundary nodes either: there the cells on either side of the
 /// inner nodes happen to hold equally many columns of particles. `vsb study resultant` is the same by the
 /// program, drawn.
 #include <algorithm>
