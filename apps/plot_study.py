@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws the pictures of a study: its errors over the axis, and over what they cost.
+"""Draws the pictures of a study: its errors over the axis, and over what they cost; or the figures that the study names.
 
     python3 apps/plot_study.py results/column-study/column.csv
 
 Reads NAME.csv and the NAME.json beside it, as `vsb study` writes them (and calls this script); writes NAME_errors.png and
-NAME_cost.png beside them and prints their paths. Expected and published figures are open markers in the colour of their
-series.
+NAME_cost.png beside them, or NAME_figures.png or NAME_distribution.png for a study with a [chart], and prints their paths.
+Expected and published figures are open markers in the colour of their series.
 """
 import argparse
 import csv
@@ -20,7 +20,9 @@ try:
 
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
+    from matplotlib.colors import to_rgba
     from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
     from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullLocator
 except ImportError as error:
     sys.exit(f"plot_study.py: {error}; on Debian: apt-get install python3-matplotlib, and use /usr/bin/python3")
@@ -35,31 +37,51 @@ QUANTITIES.update({f"{e}_cell_mean": f"{name}, cell means" for e, name in list(Q
                    if not e.startswith("e_u") and not e.endswith("recovered")})
 
 
+QUANTITIES.update({"hoop_ratio": "mean hoop stress over the exact one", "net_force_share": "net force / load",
+                   "net_torque_share": "net torque / (load x half width)"})
+FLOOR = 1e-17  # where a distribution on a logarithmic axis has its zeros
+
+
 def number(text):
-    """The number in a cell; None where it is empty or cannot stand on a logarithmic axis of errors."""
+    """The number in a cell; None where it is empty or cannot stand on a logarithmic axis."""
+    value = finite(text)
+    return value if value is not None and value > 0 else None
+
+
+def finite(text):
+    """The number in a cell; None where it is empty or not finite."""
     value = float(text) if text else math.nan
-    return value if math.isfinite(value) and value > 0 else None
+    return value if math.isfinite(value) else None
 
 
 class Study:
-    """The lines of a study's errors, by series and error."""
+    """The lines of the figures that a study's charts show, its errors unless it says otherwise, by series and figure."""
 
     def __init__(self, path):
         self.path = pathlib.Path(path)
         self.about = json.loads(self.path.with_suffix(".json").read_text())
+        self.chart = self.about["chart"]
         with self.path.open(newline="") as file:
-            self.lines = [line for line in csv.DictReader(file) if line["figure"] in self.about["errors"]]
-        drawn = {line["series"] for line in self.lines if number(line["value"])}
+            self.lines = [line for line in csv.DictReader(file) if line["figure"] in self.chart["figures"]]
+        drawn = {line["series"] for line in self.lines if self.drawn(line["value"])}
         self.series = [name for name in self.about["series"] if name in drawn]
-        self.errors = [e for e in self.about["errors"] if any(l["figure"] == e and number(l["value"]) for l in self.lines)]
+        self.errors = [e for e in self.chart["figures"] if any(l["figure"] == e and self.drawn(l["value"]) for l in self.lines)]
         self.labels = list(dict.fromkeys(line["case"] for line in self.lines)) if self.about["axis"]["labels"] else []
+
+    def value(self, text):
+        """A number that can stand on the charts' axis of figures."""
+        return number(text) if self.chart["log"] else finite(text)
+
+    def drawn(self, text):
+        """Whether a number is in the charts; a distribution has its zeros at the floor."""
+        return (finite if self.chart["distribution"] else self.value)(text) is not None
 
     def place(self, line):
         return self.labels.index(line["case"]) if self.labels else float(line["case"])
 
     def of(self, series, error):
         """The lines of a series for an error that have a value, along the axis."""
-        found = [l for l in self.lines if l["series"] == series and l["figure"] == error and number(l["value"])]
+        found = [l for l in self.lines if l["series"] == series and l["figure"] == error and self.drawn(l["value"])]
         return sorted(found, key=self.place)
 
     def style(self, series):
@@ -77,10 +99,14 @@ def panels_for(study, rows):
 
 
 def legend_below(figure, study, extra):
-    """Series first, then what the other marks mean, in a strip that is added below the panels."""
+    """Series first, then what the other marks mean."""
     handles = [Line2D([], [], color=study.style(s)[0], marker=study.style(s)[1], markersize=5, label=s,
                       linestyle="none" if study.labels else "-") for s in study.series]
-    handles += extra
+    strip_below(figure, handles + extra)
+
+
+def strip_below(figure, handles):
+    """A legend in a strip that is added below the panels."""
     width, height = figure.get_size_inches()
     letters = 17 * width  # in a line
     columns = max(1, min(len(handles), int(letters / (8 + max(len(h.get_label()) for h in handles)))))
@@ -96,8 +122,8 @@ def other_marks(study):
     handles = []
     grey = dict(color="0.35", linestyle="none", markerfacecolor="none")
     for column, marker, size in (("expected", "s", 8), ("published", "D", 6)):
-        if any(number(line[column]) for line in study.lines):
-            names = dict.fromkeys(l["source"] or "expected" for l in study.lines if number(l["expected"]))
+        if any(study.value(line[column]) is not None for line in study.lines):
+            names = dict.fromkeys(l["source"] or "expected" for l in study.lines if study.value(l["expected"]) is not None)
             name = ", ".join(names) if column == "expected" else study.about["published_source"]
             handles.append(Line2D([], [], marker=marker, markersize=size, label=name, **grey))
     if any(line["verdict"] == "fail" for line in study.lines):
@@ -131,18 +157,19 @@ def draw_errors(study):
             lines = study.of(series, error)
             shift = 0.7 * ((k + 0.5) / len(study.series) - 0.5) if study.labels else 0
             for line in lines:
-                x, y = study.place(line) + shift, number(line["value"])
+                x, y = study.place(line) + shift, study.value(line["value"])
                 points.append((x, y))
                 for column, mark, size in (("expected", "s", 8), ("published", "D", 6)):
-                    if number(line[column]):
-                        points.append((x, number(line[column])))
-                        panel.plot(x, number(line[column]), mark, color=colour, markerfacecolor="none", markersize=size,
+                    if study.value(line[column]) is not None:
+                        points.append((x, study.value(line[column])))
+                        panel.plot(x, study.value(line[column]), mark, color=colour, markerfacecolor="none", markersize=size,
                                    markeredgewidth=0.8, zorder=4)
                 if line["verdict"] == "fail":
                     panel.plot(x, y, "o", color=MISSED, markerfacecolor="none", markersize=12, markeredgewidth=1.2, zorder=5)
-            panel.plot([study.place(l) + shift for l in lines], [number(l["value"]) for l in lines], color=colour,
+            panel.plot([study.place(l) + shift for l in lines], [study.value(l["value"]) for l in lines], color=colour,
                        marker=marker, markersize=4, linewidth=1.2, linestyle="none" if study.labels else "-", zorder=3)
-        panel.set_yscale("log")
+        if study.chart["log"]:
+            panel.set_yscale("log")
         panel.set(title=QUANTITIES.get(error, ""), ylabel=f"{error} (-)")
         panel.grid(axis="y", color="0.92", linewidth=0.6)
         panel.set_axisbelow(True)
@@ -156,7 +183,8 @@ def draw_errors(study):
             panel.set_xlabel(axis["name"] + (f" ({axis['unit']})" if axis["unit"] else ""))
             if axis["log"]:
                 panel.set_xscale("log")
-                draw_slopes(panel, points)
+                if study.chart["log"]:
+                    draw_slopes(panel, points)
             places = {line["case"]: float(line["case"]) for line in study.lines}
             if len(places) <= 7:
                 panel.xaxis.set_major_locator(FixedLocator(sorted(places.values())))
@@ -167,9 +195,43 @@ def draw_errors(study):
             span = max(places.values()) - min(places.values())
             if not axis["log"] and span > 0:
                 panel.set_xlim(min(places.values()) - 0.06 * span, max(places.values()) + 0.06 * span)
-        readable(panel.yaxis)
-    slopes = [Line2D([], [], color="0.6", linewidth=0.9, label="slopes 1 and 2")] if axis["log"] else []
+        if study.chart["log"]:
+            readable(panel.yaxis)
+    slopes = [Line2D([], [], color="0.6", linewidth=0.9, label="slopes 1 and 2")] if axis["log"] and study.chart["log"] else []
     legend_below(figure, study, other_marks(study) + slopes)
+    return figure
+
+
+def draw_distribution(study):
+    """How many cases of every series have which value."""
+    width = 3.6 * len(study.errors)
+    figure, panels = plt.subplots(1, len(study.errors), squeeze=False, sharex=True, sharey=True, layout="constrained",
+                                  figsize=(width, 2.9))
+    figure.suptitle(study.about["title"] or study.about["study"])
+    log = study.chart["log"]
+
+    def look(series):
+        colour, _ = study.style(series)
+        return dict(facecolor=to_rgba(colour, 0.25), edgecolor=colour, linewidth=1.2)
+
+    values = {(s, e): [max(FLOOR, finite(l["value"])) if log else finite(l["value"]) for l in study.of(s, e)]
+              for s in study.series for e in study.errors}
+    everything = [x for some in values.values() for x in some]
+    if log:  # three bins to a decade
+        low, high = math.floor(3 * math.log10(min(everything))), math.ceil(3 * math.log10(max(everything)))
+        bins = [10 ** (k / 3) for k in range(low, max(high, low + 1) + 1)]
+    else:
+        bins = 40
+        low, high = min(everything), max(everything)
+    for panel, error in zip(panels[0], study.errors):
+        for series in study.series:
+            panel.hist(values[series, error], bins=bins, range=None if log else (low, high), histtype="stepfilled",
+                       **look(series))
+        if log:
+            panel.set_xscale("log")
+        panel.set_xlabel(f"{QUANTITIES.get(error, error)} (-)")
+    panels[0][0].set_ylabel("cases")
+    strip_below(figure, [Patch(**look(series), label=series) for series in study.series])
     return figure
 
 
@@ -251,9 +313,15 @@ def main():
     arguments = parser.parse_args()
     study = Study(arguments.table)
     if not study.errors:
-        print("plot_study.py: no case has an error to draw")
+        print("plot_study.py: no case has a figure to draw")
         return
-    for kind, draw in (("errors", draw_errors), ("cost", draw_cost)):
+    if study.chart["distribution"]:
+        kinds = [("distribution", draw_distribution)]
+    elif study.chart["cost"]:
+        kinds = [("errors", draw_errors), ("cost", draw_cost)]
+    else:
+        kinds = [("figures", draw_errors)]
+    for kind, draw in kinds:
         path = study.path.with_name(f"{study.path.stem}_{kind}.png")
         figure = draw(study)
         figure.savefig(path, dpi=arguments.dpi)

@@ -92,6 +92,7 @@ int main(int argc, char** argv) {
   std::string scene_path;
   std::vector<std::string> overrides;
   RunOptions options;
+  bool static_solution = false;
   int threads = 0;
   const auto add_threads = [&](CLI::App* command) {
     command
@@ -115,7 +116,7 @@ int main(int argc, char** argv) {
   run->add_flag("--quiet", options.quiet, "Print errors only");
   run->add_flag("--resume", options.resume,
                 "Continue from the checkpoint in the results' directory, if there is one");
-  run->add_flag("--static", options.static_solution,
+  run->add_flag("--static", static_solution,
                 "Solve for the static state under the final loads (linear elastic, small strain) in place of "
                 "time steps");
 
@@ -161,7 +162,8 @@ int main(int argc, char** argv) {
       };
       return run_study(cases, study_options);
     }
-    if (options.static_solution && options.resume)
+    if (static_solution) options.solution = Solution::static_state;
+    if (static_solution && options.resume)
       throw SceneError("--static takes no steps, so there is none to --resume from; give one of the two");
     const Scene scene = read_scene(scene_path, overrides);
     if (options.directory.empty()) options.directory = "results/" + scene.name;

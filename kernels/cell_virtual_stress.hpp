@@ -37,9 +37,7 @@ struct OriginalVirtualStress {
   }
   template <int Dim>
   KOKKOS_FUNCTION bool is_boundary(const Vector<Dim, int>& cell) const {
-    int row = 0;
-    for (int i = Dim - 1; i > 0; --i) row = row * grid.cells[i] + cell[i];
-    return cells.boundary(row, cell[0] / 64) >> (cell[0] % 64) & 1;
+    return cells.boundary(grid.row_index(cell), cell[0] / 64) >> (cell[0] % 64) & 1;
   }
 };
 

@@ -32,8 +32,8 @@ struct FloodVoids {
 
   KOKKOS_FUNCTION void operator()(int i, int& changed) const {
     const int r = i / tiling.words, w = i % tiling.words;
-    const int j = r % tiling.cell_rows[0], k = r / tiling.cell_rows[0];
-    const Vector<2, int> row{{j, k}};
+    const auto row = tiling.cell_row_place(r);
+    const int j = row[0], k = row[1];
     std::uint64_t reached = dilated_word(from, tiling, w, row, row, 1, 1);
     reached |= word(j - 1, k, w) | word(j + 1, k, w) | word(j, k - 1, w) | word(j, k + 1, w);
     to(r, w) = reached & ~occupied(r, w) & tiling.existing(row, w, 0);
@@ -42,7 +42,7 @@ struct FloodVoids {
   /// Word w of a row of `from`; nothing beyond the faces of the grid.
   KOKKOS_FUNCTION std::uint64_t word(int j, int k, int w) const {
     const bool exists = j >= 0 && j < tiling.cell_rows[0] && k >= 0 && k < tiling.cell_rows[1];
-    return exists ? from(k * tiling.cell_rows[0] + j, w) : 0;
+    return exists ? from(tiling.cell_row(j, k), w) : 0;
   }
 };
 

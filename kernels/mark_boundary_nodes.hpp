@@ -73,6 +73,11 @@ struct BitRows {
     }
     return rows;
   }
+  /// The row of cells at (j, k), and back; CellNumbering::row_index says the same of a cell.
+  KOKKOS_FUNCTION int cell_row(int j, int k) const { return k * cell_rows[0] + j; }
+  KOKKOS_FUNCTION Vector<2, int> cell_row_place(int r) const {
+    return {{r % cell_rows[0], r / cell_rows[0]}};
+  }
   KOKKOS_FUNCTION int cell_row_count() const { return cell_rows[0] * cell_rows[1]; }
   KOKKOS_FUNCTION int node_row_count() const { return node_rows[0] * node_rows[1]; }
 
@@ -106,9 +111,8 @@ struct MarkOccupied {
 
   KOKKOS_FUNCTION void operator()(int p) const {
     const auto cell = grid.cell_containing(particles.position_of(p));
-    int row = 0;
-    for (int i = Dim - 1; i > 0; --i) row = row * grid.cells[i] + cell[i];
-    Kokkos::atomic_fetch_or(&occupied(row, cell[0] / 64), std::uint64_t(1) << (cell[0] % 64));
+    Kokkos::atomic_fetch_or(&occupied(grid.row_index(cell), cell[0] / 64), std::uint64_t(1)
+                                                                               << (cell[0] % 64));
   }
 };
 
@@ -121,7 +125,7 @@ KOKKOS_INLINE_FUNCTION std::uint64_t dilated_word(const Rows& bits, const BitRow
   std::uint64_t result = 0;
   for (int k = math::max(first[1], 0); k <= math::min(last[1], tiling.cell_rows[1] - 1); ++k)
     for (int j = math::max(first[0], 0); j <= math::min(last[0], tiling.cell_rows[0] - 1); ++j) {
-      const int row = k * tiling.cell_rows[0] + j;
+      const int row = tiling.cell_row(j, k);
       const std::uint64_t x = bits(row, w);
       result |= x;
       for (int n = 1; n <= up; ++n) {
@@ -140,7 +144,7 @@ KOKKOS_INLINE_FUNCTION std::uint64_t dilated_word(const Rows& bits, const BitRow
 template <int Dim, class Rows>
 KOKKOS_INLINE_FUNCTION std::uint64_t touching_cells(const Rows& source, const BitRows<Dim>& tiling, int r,
                                                     int w) {
-  const Vector<2, int> at{{r % tiling.cell_rows[0], r / tiling.cell_rows[0]}};
+  const auto at = tiling.cell_row_place(r);
   return dilated_word(source, tiling, w, {{at[0] - 1, at[1] - 1}}, {{at[0] + 1, at[1] + 1}}, 1, 1) &
          tiling.existing(at, w, 0);
 }

@@ -31,8 +31,8 @@ struct MarkUnderfilled {
     const int r = i / tiling.words, w = i % tiling.words;
     Vector<Dim, int> cell;
     cell[0] = 64 * w;
-    if constexpr (Dim > 1) cell[1] = r % tiling.cell_rows[0];
-    if constexpr (Dim > 2) cell[2] = r / tiling.cell_rows[0];
+    const auto row = tiling.cell_row_place(r);
+    for (int k = 1; k < Dim; ++k) cell[k] = row[k - 1];
     const int first_node = basis.grid.node_index(cell), cells = math::min(tiling.cells_x - 64 * w, 64);
     std::uint64_t word = 0;
     for (int b = 0; b < cells; ++b, ++cell[0])

@@ -65,8 +65,7 @@ void set_void_filter(Occupancy<Device>& o, const Basis& basis) {
   const auto host = Kokkos::create_mirror_view(o.cells.outside);
   const auto tiling = BitRows<Basis::dimension>::of(basis);
   for (int r = 0; r < tiling.cell_row_count(); ++r)
-    for (int w = 0; w < tiling.words; ++w)
-      host(r, w) = tiling.existing({{r % tiling.cell_rows[0], r / tiling.cell_rows[0]}}, w, 0);
+    for (int w = 0; w < tiling.words; ++w) host(r, w) = tiling.existing(tiling.cell_row_place(r), w, 0);
   Kokkos::deep_copy(o.cells.outside, host);
   mark_anew(o);
 }

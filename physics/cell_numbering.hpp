@@ -67,6 +67,12 @@ struct CellNumbering {
     for (int i = Dim - 1; i >= 0; --i) index = index * cells[i] + ijk[i];
     return index;
   }
+  /// Which row of cells along x a cell is in.
+  KOKKOS_FUNCTION int row_index(const Vector<Dim, int>& ijk) const {
+    int row = 0;
+    for (int i = Dim - 1; i > 0; --i) row = row * cells[i] + ijk[i];
+    return row;
+  }
   KOKKOS_FUNCTION Vector<Dim, int> cell_ijk(int cell) const {
     Vector<Dim, int> ijk;
     for (int i = 0; i < Dim; ++i) {

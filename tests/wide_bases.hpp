@@ -3,12 +3,17 @@
 /// The bases with a layer of ghost cells, on a grid that is given without it.
 #pragma once
 
+#include <tuple>
 #include <vsb/physics/quadratic_bspline_basis.hpp>
 #include <vsb/physics/uniform_gimp_basis.hpp>
 
 #include "support.hpp"
 
 namespace vsb::test {
+
+using WideBases = std::tuple<QuadraticBSplineBasis<1, double>, QuadraticBSplineBasis<2, double>,
+                             QuadraticBSplineBasis<3, double>, UniformGimpBasis<1, double>,
+                             UniformGimpBasis<2, double>, UniformGimpBasis<3, double>>;
 
 template <class Basis>
 struct WideBasis;

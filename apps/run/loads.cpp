@@ -143,6 +143,7 @@ std::vector<Resultant> exact_resultants(const Scene& scene) {
         r.force[i] += f[i];
         r.torque[i] += x[j] * f[l] - x[l] * f[j];
       }
+      r.load += std::hypot(f[0], f[1], f[2]);
     });
   }
   return resultants;

@@ -39,6 +39,7 @@ std::vector<LoadedPoint> conforming_points(const Scene& scene, const Grid& grid,
 /// Force and torque about the origin of each traction at full load on the initial surface.
 struct Resultant {
   Point force{}, torque{};
+  double load = 0;  ///< integral of |sbar n|, which a closed surface does not cancel: p A of a pressure
 };
 std::vector<Resultant> exact_resultants(const Scene& scene);
 /// sbar of a traction at full load.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "run/recovered_stress.hpp"
@@ -28,6 +29,13 @@ double loads_settled_at(const Scene& scene) {
   double t = 0;
   for (const auto& traction : scene.tractions) t = std::max(t, traction.time.settled_at());
   return t;
+}
+
+void refuse_unsettled_loads(const Scene& scene, const std::string& who) {
+  for (const auto& traction : scene.tractions)
+    if (!std::isfinite(traction.time.settled_at()))
+      throw SetupError(fmt::format(
+          "{}: traction '{}' is a sine, which never settles, so there is no final load", who, traction.name));
 }
 
 void print_advice(const Scene& scene, const Simulation& simulation) {

@@ -12,6 +12,9 @@ namespace vsb::app {
 /// The time from which on all loads are constant, s; infinite where one never is.
 double loads_settled_at(const Scene& scene);
 
+/// Throws SetupError, which begins with `who`, for a load that never settles.
+void refuse_unsettled_loads(const Scene& scene, const std::string& who);
+
 /// Prints the advice about a scene and its simulation as warnings on standard error.
 void print_advice(const Scene& scene, const Simulation& simulation);
 

@@ -11,6 +11,7 @@
 
 #include "run/interrupt.hpp"
 #include "run/progress.hpp"
+#include "run/run_balance.hpp"
 #include "run/run_parts.hpp"
 #include "run/run_static.hpp"
 #include "run/scene_advice.hpp"
@@ -167,7 +168,15 @@ RunResult run(const Scene& scene, const RunOptions& options) {
 
 RunResult run_scene(const Scene& scene, const RunOptions& options) {
   try {
-    return options.static_solution ? run_static(scene, options) : run(scene, options);
+    switch (options.solution) {
+      case Solution::static_state:
+        return run_static(scene, options);
+      case Solution::balance:
+        return run_balance(scene, options);
+      case Solution::steps:
+        break;
+    }
+    return run(scene, options);
   } catch (const Diverged& error) {
     const auto hint = units_hint(scene);
     if (hint.empty()) throw;

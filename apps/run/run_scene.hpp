@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "run/solution.hpp"
 #include "run/summary.hpp"
 #include "scene/scene.hpp"
 
@@ -24,9 +25,9 @@ enum ExitCode {
 struct RunOptions {
   std::string directory;  ///< where results go
   bool quiet = false;
-  bool progress_only = false;    ///< print neither head nor report: the caller does
-  bool static_solution = false;  ///< solve for the static state in place of making steps
-  bool resume = false;           ///< continue from the directory's checkpoint, if there is one
+  bool progress_only = false;  ///< print neither head nor report: the caller does
+  Solution solution = Solution::steps;
+  bool resume = false;  ///< continue from the directory's checkpoint, if there is one
 };
 
 struct RunResult {

@@ -22,10 +22,7 @@ constexpr double small_strain = 5e-3;
 void refuse_moving_scenes(const Scene& scene) {
   const auto refuse = [](const std::string& why) { throw SetupError("--static: " + why); };
   if (scene.single_precision) refuse("needs precision = \"double\"");
-  for (const auto& traction : scene.tractions)
-    if (!std::isfinite(traction.time.settled_at()))
-      refuse(fmt::format("traction '{}' is a sine, which never settles, so there is no static state",
-                         traction.name));
+  refuse_unsettled_loads(scene, "--static");
   for (const auto& body : scene.bodies)
     if (body.velocity.value != Point{} || body.velocity.gradient != std::array<Point, 3>{})
       refuse(
@@ -60,7 +57,7 @@ RunResult run_static(const Scene& scene, const RunOptions& options) {
 
   Progress progress(options.quiet, simulation->particle_count());
   RunFigures figures;
-  figures.static_solution = true;
+  figures.solution = Solution::static_state;
   const auto begin = Clock::now();
   const auto solution =
       simulation->solve_static(loads_settled_at(scene), [&](int iteration, double residual) {

@@ -99,7 +99,7 @@ std::vector<std::string> scene_advice(const Scene& scene) {
         "time.until_static.force_ratio = {:g}: with B-splines, nodes that hold on to a corner of one "
         "particle "
         "hardly come to rest, so the run may never become static; {:g}, stronger damping (0.4), or --static",
-        scene.time.until_static->force_ratio, 2e-5));
+        scene.time.until_static->force_ratio, static_spline_ratio));
   if (scene.time.kappa > largest_stable_kappa(scene))
     advice.push_back(
         fmt::format("time.kappa = {:.4g} is above the stability limit of about {:g}; give a smaller one",

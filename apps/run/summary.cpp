@@ -58,13 +58,20 @@ std::vector<std::pair<std::string, double>> named_figures(const Scene& scene, co
     for (const auto& [name, force] :
          {std::pair("net_force_", &f.balance.net_force), std::pair("exact_force_", &f.balance.exact_force)})
       named.emplace_back(std::string(name) + "xyz"[c], (*force)[c]);
+  if (f.solution == Solution::balance) {
+    named.emplace_back("load", f.share.load);
+    named.emplace_back("net_force_share", f.share.net_force);
+    if (scene.dimension > 1) named.emplace_back("net_torque_share", f.share.net_torque);
+  }
   return named;
 }
 
-std::vector<std::string> figure_names(const Scene& scene) {
+std::vector<std::string> figure_names(const Scene& scene, Solution solution) {
   auto names = error_names(scene);
   for (const auto& name : comparison_figure_names(scene.compare)) names.push_back(name);
-  for (const auto& [name, value] : named_figures(scene, {})) names.push_back(name);
+  RunFigures figures;
+  figures.solution = solution;
+  for (const auto& [name, value] : named_figures(scene, figures)) names.push_back(name);
   return names;
 }
 
@@ -91,7 +98,9 @@ std::string summary_json(const Scene& scene, const RunFigures& f) {
       {"compared", compared},
       {"particles", f.particles},
       {"boundary_nodes", f.boundary_nodes},
-      {"solution", f.static_solution ? "static" : "explicit"},
+      {"solution", f.solution == Solution::static_state ? "static"
+                   : f.solution == Solution::balance    ? "balance"
+                                                        : "explicit"},
       {"steps", f.steps},
       {"iterations", f.iterations},
       {"dt", scene.time.dt},
@@ -110,6 +119,10 @@ std::string summary_json(const Scene& scene, const RunFigures& f) {
       {"peak_bytes", peak_bytes()},
       {"provenance", provenance},
   };
+  if (f.solution == Solution::balance)
+    summary.insert("resultant", toml::table{{"load", f.share.load},
+                                            {"net_force_share", f.share.net_force},
+                                            {"net_torque_share", f.share.net_torque}});
   if (f.cut.particles > 0)
     summary.insert("cut_bodies", toml::table{{"volume", f.cut.particles + f.cut.dropped},
                                              {"particle_volume", f.cut.particles}});
@@ -181,7 +194,7 @@ void print_report(const Scene& scene, const RunFigures& f) {
     }
   }
   for (const auto& [name, value] : f.compared) fmt::print("{:<12}{:>12.4f}\n", name, value);
-  const char* sweep = f.static_solution ? "iteration" : "step";
+  const char* sweep = f.solution == Solution::static_state ? "iteration" : "step";
   fmt::print("{} {}s in {:.3g} s: {:.4g} ns per particle and {}; peak memory {:.4g} MB\n",
              f.steps_timed + f.iterations, sweep, f.seconds, f.ns_per_particle_step(), sweep,
              static_cast<double>(peak_bytes()) / 1e6);

@@ -7,16 +7,18 @@
 #include <utility>
 #include <vector>
 
+#include "run/resultant_share.hpp"
 #include "run/simulation.hpp"
+#include "run/solution.hpp"
 
 namespace vsb::app {
 
 struct RunFigures {
-  long long steps = 0;           ///< step number at the end
-  long long steps_timed = 0;     ///< steps made by this program, fewer after a resume
-  double seconds = 0;            ///< wall time of those steps alone
-  bool static_solution = false;  ///< by conjugate gradients in place of steps
-  int iterations = 0;            ///< of them
+  long long steps = 0;        ///< step number at the end
+  long long steps_timed = 0;  ///< steps made by this program, fewer after a resume
+  double seconds = 0;         ///< wall time of those steps alone
+  Solution solution = Solution::steps;
+  int iterations = 0;  ///< of a static solution
   bool found_static = false;
   int particles = 0, boundary_nodes = 0;
   size_t state_bytes = 0;
@@ -24,6 +26,7 @@ struct RunFigures {
   MomentFit moment_fit;
   VoidFilterReport void_filter;
   BalanceReport balance;
+  ResultantShare share;    ///< of a balance alone
   std::string state_hash;  ///< of the particles' bits at the end
   std::vector<std::pair<std::string, double>> errors;
   std::vector<std::pair<std::string, double>> compared;  ///< figures of the comparison that are no errors
@@ -34,8 +37,8 @@ struct RunFigures {
 
 /// The figures that depend on the scene alone, by name: errors, counts, balance; what a study can expect.
 std::vector<std::pair<std::string, double>> named_figures(const Scene& scene, const RunFigures& figures);
-/// The names that named_figures will give for a run of the scene.
-std::vector<std::string> figure_names(const Scene& scene);
+/// The names that named_figures will give for the scene.
+std::vector<std::string> figure_names(const Scene& scene, Solution solution);
 
 /// Errors, counts, times, resultant, memory and provenance as JSON.
 std::string summary_json(const Scene& scene, const RunFigures& figures);

@@ -240,9 +240,8 @@ TimeSpec read_time(TableReader r, const Scene& scene) {
              "give either steps or until_static (with max_steps), not both");
     TableReader s = r.table("until_static");
     StaticCriterion c{};
-    // Of B-splines, nodes that hold on to a corner of one particle move too slowly for the damping to reach.
     const bool splines = scene.method.basis == BasisKind::quadratic_bspline;
-    c.force_ratio = s.number("force_ratio", {0, 1, true, true}, splines ? 2e-5 : 1e-6,
+    c.force_ratio = s.number("force_ratio", {0, 1, true, true}, splines ? static_spline_ratio : 1e-6,
                              "unbalanced force / internal force");
     c.energy_ratio =
         s.number("energy_ratio", {0, 1, true, true}, splines ? 1e-6 : 1e-9, "kinetic energy / strain energy");

@@ -78,6 +78,10 @@ struct StaticCriterion {
   long long check_every;  ///< steps
 };
 
+/// The force ratio that counts as static with B-splines where a scene does not say: nodes that hold on to a
+/// corner of one particle move too slowly for the damping to reach.
+constexpr double static_spline_ratio = 2e-5;
+
 struct TimeSpec {
   double dt = 0;        ///< s
   double kappa = 0;     ///< share of the critical time step, Eq. (29); from dt where dt was given

@@ -64,8 +64,11 @@ double CaseRecord::ns_per_particle_step() const {
   return sweeps > 0 ? 1e9 * seconds / (static_cast<double>(particles) * sweeps) : 0;
 }
 
-std::string record_subject(const Scene& scene, bool static_solution) {
-  return (static_solution ? "# static solution\n" : "") + scene.resolved;
+std::string record_subject(const Scene& scene, Solution solution) {
+  const char* what = solution == Solution::static_state ? "# static solution\n"
+                     : solution == Solution::balance    ? "# balance\n"
+                                                        : "";
+  return what + scene.resolved;
 }
 
 std::optional<CaseRecord> read_case_record(const std::string& directory, const std::string& subject) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "run/solution.hpp"
 #include "scene/scene.hpp"
 
 namespace vsb::app {
@@ -38,8 +39,8 @@ struct CaseRecord {
   double total_seconds() const { return 1e-9 * ns_per_particle_step() * particle_steps(); }
 };
 
-/// What a record is of: the scene with all defaults, and how it is solved.
-std::string record_subject(const Scene& scene, bool static_solution);
+/// What a record is of: the scene with all defaults, and what is done with it.
+std::string record_subject(const Scene& scene, Solution solution);
 
 /// The record in a directory; none where there is none, it is damaged, or it is of another subject or another
 /// version of the program.

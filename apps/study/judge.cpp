@@ -60,6 +60,9 @@ std::vector<StudyLine> judge_case(const Study& study, const StudySeries& series,
   };
   for (const auto& [name, expectation] : c.expect) add(name);
   for (const auto& [name, value] : c.published) add(name);
+  if (study.chart)
+    for (const auto& name : study.chart->figures)
+      if (record.figure(name)) add(name);
   for (const auto& name : names) {
     StudyLine line;
     line.figure = name;
@@ -75,6 +78,44 @@ std::vector<StudyLine> judge_case(const Study& study, const StudySeries& series,
     lines.push_back(line);
   }
   return lines;
+}
+
+StudyLine judge_statistic(const Study& study, const Statistic& statistic,
+                          const std::vector<const CaseRecord*>& records) {
+  StudyLine line;
+  std::vector<double> values;
+  const auto& cases = study.series[statistic.series].cases;
+  bool complete = true;
+  for (size_t i = 0; i < cases.size(); ++i) {
+    if (!cases[i].expected_failure.empty()) continue;
+    const auto value = records[i]->figure(statistic.figure);
+    complete = complete && value && std::isfinite(*value);
+    if (value) values.push_back(*value);
+  }
+  std::sort(values.begin(), values.end());
+  const size_t n = values.size();
+  const char* kind = "largest";
+  switch (statistic.kind) {
+    case Statistic::Kind::largest:
+      if (n > 0) line.value = values.back();
+      break;
+    case Statistic::Kind::smallest:
+      kind = "smallest";
+      if (n > 0) line.value = values.front();
+      break;
+    case Statistic::Kind::median:
+      kind = "median";
+      if (n > 0) line.value = 0.5 * (values[(n - 1) / 2] + values[n / 2]);
+      break;
+  }
+  line.figure = fmt::format("{} {}", kind, statistic.figure);
+  line.note = fmt::format("of {} cases", n);
+  if (!complete) {
+    line.value.reset();
+    line.note = "not every case has the figure";
+  }
+  judge(line, statistic.expectation);
+  return line;
 }
 
 std::vector<StudyLine> reach_lines(const Reach& reach, const std::vector<const CaseRecord*>& records) {

@@ -34,6 +34,10 @@ std::vector<StudyLine> judge_case(const Study& study, const StudySeries& series,
 StudyLine judge_relation(const Study& study, const Relation& relation, const CaseRecord& first,
                          const CaseRecord& second);
 
+/// The line of a statistic of the cases of a series; a case without the figure makes it fail.
+StudyLine judge_statistic(const Study& study, const Statistic& statistic,
+                          const std::vector<const CaseRecord*>& records);
+
 /// The seconds and the particle-steps that a series needs to bring the figures of study.reach to their level:
 /// interpolated between cases, error against cost on logarithmic scales, or extrapolated from the last two.
 /// `records` are those of its cases. Lines without a value where the error does not fall.

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
@@ -13,6 +14,7 @@
 #include "files/build_info.hpp"
 #include "run/summary.hpp"
 #include "scene/toml_reader.hpp"
+#include "study/random_body.hpp"
 
 namespace vsb::app {
 
@@ -25,7 +27,8 @@ struct Inherited {
   std::string scene, source, sweep;
   std::vector<std::string> set;
   std::optional<double> tolerance;
-  bool expect_static = true, static_solution = false;
+  bool expect_static = true;
+  Solution solution = Solution::steps;
 };
 
 std::vector<std::string> read_set(TableReader& r) {
@@ -41,12 +44,22 @@ std::vector<std::string> read_set(TableReader& r) {
   return set;
 }
 
-const std::vector<std::string> inherited_keys = {"scene", "source",        "tolerance",
-                                                 "set",   "expect_static", "static"};
+const std::vector<std::string> inherited_keys = {"scene",         "source", "tolerance", "set",
+                                                 "expect_static", "static", "balance"};
 
 std::vector<std::string> with_inherited(std::vector<std::string> keys) {
   keys.insert(keys.end(), inherited_keys.begin(), inherited_keys.end());
   return keys;
+}
+
+/// static = true or balance = true; the innermost counts.
+Solution read_solution(TableReader& r, Solution outer) {
+  const bool is_static = r.boolean("static", outer == Solution::static_state);
+  const bool is_balance = r.boolean("balance", outer == Solution::balance);
+  if (is_static && is_balance && r.has("static") && r.has("balance"))
+    r.fail(*r.source().get("balance"), "balance", "give either static = true or balance = true, not both");
+  if (is_static && is_balance) return r.has("static") ? Solution::static_state : Solution::balance;
+  return is_static ? Solution::static_state : is_balance ? Solution::balance : Solution::steps;
 }
 
 /// Reads the keys that a table may change for everything inside it.
@@ -58,7 +71,7 @@ Inherited read_inherited(TableReader& r, Inherited outer, const fs::path& folder
   }
   outer.source = r.text("source", outer.source);
   outer.expect_static = r.boolean("expect_static", outer.expect_static);
-  outer.static_solution = r.boolean("static", outer.static_solution);
+  outer.solution = read_solution(r, outer.solution);
   if (r.node("tolerance")) outer.tolerance = r.number("tolerance", Range::at_least(0));
   const auto set = read_set(r);
   outer.set.insert(outer.set.end(), set.begin(), set.end());
@@ -137,8 +150,8 @@ class StudyReader {
     ResolvedTable resolved;
     TableReader r(document, "", resolved);
     study_.name = fs::path(path_).stem().string();
-    r.allow_only(
-        with_inherited({"title", "published_source", "rates", "axis", "series", "relation", "reach"}));
+    r.allow_only(with_inherited(
+        {"title", "published_source", "rates", "axis", "series", "relation", "statistic", "chart", "reach"}));
     study_.title = r.text("title");
     study_.published_source = r.text("published_source", "published");
     study_.rates = r.boolean("rates", false);
@@ -148,6 +161,8 @@ class StudyReader {
     if (series.empty()) r.missing("series", "at least one table [[series]]");
     for (auto& table : series) read_series(table, inherited);
     for (auto& table : r.tables("relation")) read_relation(table, inherited);
+    for (auto& table : r.tables("statistic")) read_statistic(table, inherited);
+    if (r.has("chart")) read_chart(r.table("chart"));
     if (r.has("reach")) read_reach(r.table("reach"));
     r.finish();
     leave_out_fine_cases();
@@ -176,19 +191,62 @@ class StudyReader {
   void read_series(TableReader& r, const Inherited& study) {
     StudySeries series;
     const auto* name = r.source().get("name");
-    r.allow_only(with_inherited({"name", "sweep", "case"}));
+    r.allow_only(with_inherited({"name", "sweep", "case", "random_bodies"}));
     series.name = r.text("name");
     if (slug(series.name).empty()) r.fail(*name, "name", "must have a letter or a digit");
     for (const auto& other : study_.series)
       if (slug(other.name) == slug(series.name))
         r.fail(*name, "name", "another series has this name, or one whose directories would be the same");
     Inherited inherited = read_inherited(r, study, folder());
-    inherited.sweep = r.text("sweep", "");
-    auto cases = r.tables("case");
-    if (cases.empty()) r.missing("case", "at least one table [[series.case]]");
-    for (auto& table : cases) read_case(table, series, inherited);
+    if (r.has("random_bodies")) {
+      draw_cases(r, series, inherited);
+    } else {
+      inherited.sweep = r.text("sweep", "");
+      auto cases = r.tables("case");
+      if (cases.empty()) r.missing("case", "at least one table [[series.case]], or random_bodies");
+      for (auto& table : cases) read_case(table, series, inherited);
+    }
     r.finish();
     study_.series.push_back(std::move(series));
+  }
+
+  static RandomBodies read_random_bodies(TableReader r) {
+    RandomBodies bodies;
+    r.allow_only({"count", "first_seed", "half_width"});
+    bodies.count = static_cast<int>(r.integer("count", 1, 10'000));
+    bodies.first_seed = r.integer("first_seed", 0, 1'000'000'000, 1);
+    bodies.half_width = r.number("half_width", Range::positive());
+    r.finish();
+    return bodies;
+  }
+
+  /// A case for each seed, which is its place on the axis.
+  void draw_cases(TableReader& r, StudySeries& series, const Inherited& inherited) const {
+    const auto& at = *r.source().get("random_bodies");
+    for (const char* key : {"case", "sweep"})
+      if (r.has(key)) r.fail(*r.source().get(key), key, "give either cases or random_bodies, not both");
+    if (study_.axis.labels)
+      r.fail(at, "random_bodies", "are numbered by their seeds: the axis must not have labels");
+    if (inherited.scene.empty()) r.missing("scene", "the path of a scene file, here or in the study");
+    const auto bodies = read_random_bodies(r.table("random_bodies"));
+    series.drawn = true;
+    StudyCase c;
+    c.expect_static = inherited.expect_static;
+    c.solution = inherited.solution;
+    read_case_scene(at, c, inherited);
+    const Scene base = *c.scene;
+    if (const auto why = why_no_random_body(base); !why.empty()) r.fail(at, "random_bodies", why);
+    for (int k = 0; k < bodies.count; ++k) {
+      const long long seed = bodies.first_seed + k;
+      c.text = std::to_string(seed);
+      c.axis = static_cast<double>(seed);
+      c.directory = fmt::format("cases/{}_{}", slug(series.name), seed);
+      Inherited drawn = inherited;
+      const auto overrides = random_body(base, seed, bodies.half_width);
+      drawn.set.insert(drawn.set.end(), overrides.begin(), overrides.end());
+      read_case_scene(at, c, drawn);
+      series.cases.push_back(c);
+    }
   }
 
   /// The case's place on the axis, written axis = number or label = "text".
@@ -223,7 +281,7 @@ class StudyReader {
       r.missing("scene", "the path of a scene file, here, in the series or in the study");
     c.expected_failure = r.text("expect_failure", "");
     c.expect_static = inherited.expect_static;
-    c.static_solution = inherited.static_solution;
+    c.solution = inherited.solution;
     read_case_scene(place, c, inherited);
     read_figures(r, c, inherited);
     r.finish();
@@ -250,7 +308,7 @@ class StudyReader {
       TableReader figures = r.table(key);
       for (const auto& [name_key, value] : figures.source()) {
         const std::string name(name_key.str());
-        if (c.scene) check_figure(figures, value, name, figure_names(*c.scene));
+        if (c.scene) check_figure(figures, value, name, figure_names(*c.scene, c.solution));
         if (expectations)
           c.expect[name] = read_expectation(figures, name, inherited);
         else
@@ -260,6 +318,12 @@ class StudyReader {
     }
   }
 
+  size_t series_named(const TableReader& r, const toml::node& at, const std::string& name) const {
+    for (size_t s = 0; s < study_.series.size(); ++s)
+      if (study_.series[s].name == name) return s;
+    r.fail(at, "series", "there is no series of this name");
+  }
+
   Relation::Place read_place_of(TableReader& relation, const std::string& key,
                                 const std::string& figure) const {
     if (!relation.has(key)) relation.missing(key, "a case: { series = ..., axis = ... (or label) }");
@@ -267,9 +331,7 @@ class StudyReader {
     Relation::Place place;
     r.allow_only({"series", "axis", "label"});
     const auto* series = r.source().get("series");
-    const std::string name = r.text("series");
-    while (place.series < study_.series.size() && study_.series[place.series].name != name) ++place.series;
-    if (place.series == study_.series.size()) r.fail(*series, "series", "there is no series of this name");
+    place.series = series_named(r, *series, r.text("series"));
     StudyCase wanted;
     const auto& at = read_place(r, wanted, 0);
     r.finish();
@@ -281,8 +343,25 @@ class StudyReader {
     const std::string where = study_.axis.labels ? "label" : "axis";
     if (place.index == cases.size()) r.fail(at, where, "the series has no such case");
     if (!cases[place.index].expected_failure.empty()) r.fail(at, where, "this case is expected to fail");
-    check_figure(relation, *relation.source().get("figure"), figure, figure_names(*cases[place.index].scene));
+    const auto& c = cases[place.index];
+    check_figure(relation, *relation.source().get("figure"), figure, figure_names(*c.scene, c.solution));
     return place;
+  }
+
+  /// The expectation under the only one of three keys that is there; returns which.
+  static size_t read_one_of(TableReader& r, const std::array<const char*, 3>& kinds, Inherited inherited,
+                            Expectation& expectation) {
+    inherited.source = r.text("source", inherited.source);
+    size_t which = 0, found = 0;
+    for (size_t k = 0; k < kinds.size(); ++k) {
+      if (!r.node(kinds[k])) continue;
+      ++found;
+      which = k;
+      expectation = read_expectation(r, kinds[k], inherited);
+    }
+    if (found != 1)
+      r.missing(kinds[0], fmt::format("exactly one of {}, {} and {}", kinds[0], kinds[1], kinds[2]));
+    return which;
   }
 
   void read_relation(TableReader& r, const Inherited& study) {
@@ -292,30 +371,55 @@ class StudyReader {
     relation.figure = r.text("figure");
     relation.first = read_place_of(r, "first", relation.figure);
     relation.second = read_place_of(r, "second", relation.figure);
-    Inherited inherited = study;
-    inherited.source = r.text("source", study.source);
-    const std::vector<std::string> kinds = {"ratio", "difference", "rate"};
-    size_t found = 0;
-    for (size_t k = 0; k < kinds.size(); ++k) {
-      if (!r.node(kinds[k])) continue;
-      ++found;
-      relation.kind = static_cast<Relation::Kind>(k);
-      relation.expectation = read_expectation(r, kinds[k], inherited);
-    }
-    if (found != 1) r.missing("ratio", "exactly one of ratio, difference and rate");
+    relation.kind = static_cast<Relation::Kind>(
+        read_one_of(r, {"ratio", "difference", "rate"}, study, relation.expectation));
     if (relation.kind == Relation::Kind::rate && !study_.axis.log)
       r.fail(*r.source().get("rate"), "rate", "rates need a logarithmic axis (axis.log = true)");
     r.finish();
     study_.relations.push_back(std::move(relation));
   }
 
-  void read_reach(TableReader r) {
-    std::vector<std::string> known;
+  void read_statistic(TableReader& r, const Inherited& study) {
+    Statistic statistic;
+    r.allow_only({"title", "figure", "series", "source", "largest", "smallest", "median"});
+    statistic.title = r.text("title");
+    statistic.figure = r.text("figure");
+    const auto* at = r.source().get("series");
+    statistic.series = series_named(r, *at, r.text("series"));
+    for (const auto& c : study_.series[statistic.series].cases)
+      if (c.expected_failure.empty())
+        check_figure(r, *r.source().get("figure"), statistic.figure, figure_names(*c.scene, c.solution));
+    statistic.kind = static_cast<Statistic::Kind>(
+        read_one_of(r, {"largest", "smallest", "median"}, study, statistic.expectation));
+    r.finish();
+    study_.statistics.push_back(std::move(statistic));
+  }
+
+  /// What names_of(case) gives for all cases with a scene, each name once.
+  template <class NamesOf>
+  std::vector<std::string> names_of_cases(const NamesOf& names_of) const {
+    std::vector<std::string> names;
     for (const auto& series : study_.series)
       for (const auto& c : series.cases)
         if (c.scene)
-          for (const auto& name : error_names(*c.scene))
-            if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
+          for (const auto& name : names_of(c))
+            if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    return names;
+  }
+
+  void read_chart(TableReader r) {
+    const auto known = names_of_cases([](const StudyCase& c) { return figure_names(*c.scene, c.solution); });
+    Chart chart;
+    r.allow_only({"figures", "distribution", "log"});
+    chart.figures = r.texts("figures", known);
+    chart.distribution = r.boolean("distribution", false);
+    chart.log = r.boolean("log", true);
+    r.finish();
+    study_.chart = chart;
+  }
+
+  void read_reach(TableReader r) {
+    const auto known = names_of_cases([](const StudyCase& c) { return error_names(*c.scene); });
     Reach reach;
     r.allow_only({"figures", "level"});
     reach.figures = r.texts("figures", known);
@@ -343,6 +447,11 @@ class StudyReader {
       series.cases.erase(
           std::remove_if(series.cases.begin(), series.cases.end(), [](const StudyCase& c) { return c.fine; }),
           series.cases.end());
+    auto& statistics = study_.statistics;
+    statistics.erase(
+        std::remove_if(statistics.begin(), statistics.end(),
+                       [&](const Statistic& s) { return study_.series[s.series].cases.empty(); }),
+        statistics.end());
   }
 
   std::string path_;

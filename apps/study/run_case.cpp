@@ -55,7 +55,7 @@ ExitCode make(const Scene& scene, const RunOptions& options, CaseRecord record, 
       record.state = CaseRecord::State::failed;
       record.message = error.what();
     }
-    write_case_record(options.directory, record_subject(scene, options.static_solution), record);
+    write_case_record(options.directory, record_subject(scene, options.solution), record);
     return code;
   } catch (const FileError& error) {
     fmt::print(stderr, "vsb: {}\n", error.what());
@@ -85,7 +85,7 @@ int wait_for(pid_t child) {
 
 CaseResult run_case(const Scene& scene, const RunOptions& options, const CaseRecord& before,
                     const SceneRunner& run) {
-  const std::string subject = record_subject(scene, options.static_solution);
+  const std::string subject = record_subject(scene, options.solution);
   write_case_record(options.directory, subject, before);
   std::fflush(nullptr);
   const pid_t parent = getpid();

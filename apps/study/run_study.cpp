@@ -81,8 +81,7 @@ class StudyRun {
       for (size_t i = 0; i < study.series[s].cases.size(); ++i) {
         Task task{s, i, particles_of(study.series[s].cases[i]), {}};
         const auto& c = case_of(task);
-        if (c.scene)
-          task.record = read_case_record(directory_of(c), record_subject(*c.scene, c.static_solution));
+        if (c.scene) task.record = read_case_record(directory_of(c), record_subject(*c.scene, c.solution));
         tasks_.push_back(std::move(task));
       }
   }
@@ -93,16 +92,19 @@ class StudyRun {
     say("{}: {} cases, results in {}\n", study_.title, tasks_.size(), options_.directory);
     for (size_t t = 0; t < tasks_.size(); ++t) {
       const bool earlier = tasks_[t].done();
-      announce(t, earlier);
+      const bool drawn = study_.series[tasks_[t].series].drawn;
+      if (!drawn) announce(t, earlier);
+      if (drawn && tasks_[t].index == 0) announce_drawn(t);
       if (!earlier)
         if (const ExitCode code = make(tasks_[t]); code != exit_done)
           return code == exit_interrupted ? interrupted() : code;
       add_row(tasks_[t]);
-      print_lines(rows_.back());
+      print_lines(rows_.back(), drawn);
       if (!earlier) write_study_files(options_.directory, study_, rows_);
       if (interrupt_requested()) return interrupted();
     }
     judge_relations();
+    judge_statistics();
     add_reach();
     write_study_files(options_.directory, study_, rows_);
     const std::string table = options_.directory + "/" + study_.name + ".csv";
@@ -137,6 +139,16 @@ class StudyRun {
         tasks_[t].particles, times);
   }
 
+  /// All cases of a series at once: there are many, and each is short.
+  void announce_drawn(size_t first) const {
+    const auto count = study_.series[tasks_[first].series].cases.size();
+    const auto done = std::count_if(tasks_.begin() + static_cast<std::ptrdiff_t>(first),
+                                    tasks_.begin() + static_cast<std::ptrdiff_t>(first + count),
+                                    [](const Task& task) { return task.done(); });
+    say("cases {} to {} of {}: {} ({} done before; {} used)\n", first + 1, first + count, tasks_.size(),
+        study_.series[tasks_[first].series].name, done, duration_text(seconds()));
+  }
+
   void create_directory() const {
     std::error_code error;
     std::filesystem::create_directories(options_.directory, error);
@@ -154,7 +166,7 @@ class StudyRun {
     int ended = 0;
     for (const auto& task : tasks_) {
       if (!task.done() || task.record->state != CaseRecord::State::finished) continue;
-      if (case_of(task).static_solution) continue;  // next to nothing
+      if (case_of(task).solution != Solution::steps) continue;  // next to nothing
       cost += task.record->total_seconds();
       work += task.record->particle_steps();
       if (!case_of(task).scene->time.until_static) continue;
@@ -165,7 +177,7 @@ class StudyRun {
     double left = 0;
     for (size_t t = first; t < tasks_.size(); ++t) {
       const auto& c = case_of(tasks_[t]);
-      if (tasks_[t].done() || !c.scene || c.static_solution) continue;
+      if (tasks_[t].done() || !c.scene || c.solution != Solution::steps) continue;
       const auto& time = c.scene->time;
       auto steps = static_cast<double>(time.steps);
       if (time.until_static) {
@@ -188,9 +200,9 @@ class StudyRun {
     run.directory = directory_of(c);
     run.quiet = options_.quiet;
     run.progress_only = true;
-    run.static_solution = c.static_solution;
-    run.resume =
-        !c.static_solution && task.record.has_value();  // it was begun by this program, on this scene
+    run.solution = c.solution;
+    run.resume = c.solution == Solution::steps &&
+                 task.record.has_value();  // it was begun by this program, on this scene
     CaseRecord record = run.resume ? *task.record : CaseRecord{};
     record.particles = task.particles;
     const auto result = run_case(*c.scene, run, record, options_.run);
@@ -221,20 +233,38 @@ class StudyRun {
     }
   }
 
+  std::vector<const CaseRecord*> records_of(size_t series) const {
+    std::vector<const CaseRecord*> records;
+    for (const auto& task : tasks_)
+      if (task.series == series) records.push_back(&*task.record);
+    return records;
+  }
+
+  void judge_statistics() {
+    for (const auto& statistic : study_.statistics) {
+      rows_.push_back({"statistic",
+                       statistic.title,
+                       "",
+                       {},
+                       {judge_statistic(study_, statistic, records_of(statistic.series))}});
+      say("{}\n", statistic.title);
+      print_lines(rows_.back());
+    }
+  }
+
   void add_reach() {
     if (!study_.reach) return;
     for (size_t s = 0; s < study_.series.size(); ++s) {
-      std::vector<const CaseRecord*> records;
-      for (const auto& task : tasks_)
-        if (task.series == s) records.push_back(&*task.record);
-      rows_.push_back({"reach", study_.series[s].name, "", {}, reach_lines(*study_.reach, records)});
+      rows_.push_back({"reach", study_.series[s].name, "", {}, reach_lines(*study_.reach, records_of(s))});
       say("{}\n", study_.series[s].name);
       print_lines(rows_.back());
     }
   }
 
-  void print_lines(const StudyRow& row) const {
-    for (const auto& line : row.lines) say("{}", line_text(line, study_.published_source));
+  void print_lines(const StudyRow& row, bool only_failures = false) const {
+    for (const auto& line : row.lines)
+      if (!only_failures || (line.judged && !line.passed))
+        say("{}", line_text(line, study_.published_source));
   }
 
   /// The failing lines once more, and the count.

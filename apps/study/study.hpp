@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "run/solution.hpp"
 #include "scene/scene.hpp"
 
 namespace vsb::app {
@@ -30,7 +31,7 @@ struct StudyCase {
   bool fine = false;
   std::string
       expected_failure;  ///< text of the message with which the scene must be refused; empty: it must run
-  bool static_solution = false;               ///< as vsb run --static
+  Solution solution = Solution::steps;
   bool expect_static = true;                  ///< whether a run until static that does not get there fails
   std::map<std::string, Expectation> expect;  ///< by figure
   std::map<std::string, double> published;    ///< by figure
@@ -41,6 +42,7 @@ struct StudyCase {
 struct StudySeries {
   std::string name;
   std::vector<StudyCase> cases;
+  bool drawn = false;  ///< of random bodies: many cases, of which nobody wants to read the lines one by one
 };
 
 struct StudyAxis {
@@ -60,6 +62,22 @@ struct Relation {
   Expectation expectation;
 };
 
+/// An expectation on a figure of all cases of a series.
+struct Statistic {
+  enum class Kind { largest, smallest, median };
+  std::string title, figure;
+  Kind kind = Kind::largest;
+  size_t series = 0;
+  Expectation expectation;
+};
+
+/// What the charts show, where it is not the errors of the scenes.
+struct Chart {
+  std::vector<std::string> figures;
+  bool distribution = false;  ///< how often which value occurs in a series, in place of values over the axis
+  bool log = true;            ///< whether the figures have a logarithmic scale
+};
+
 /// What every series needs for its errors to fall to a level.
 struct Reach {
   std::vector<std::string> figures;
@@ -72,6 +90,8 @@ struct Study {
   bool rates = false;
   std::vector<StudySeries> series;
   std::vector<Relation> relations;
+  std::vector<Statistic> statistics;
+  std::optional<Chart> chart;
   std::optional<Reach> reach;
 };
 

@@ -70,6 +70,9 @@ std::string json_description(const Study& study) {
           if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
   for (const auto& name : names) errors.push_back(name);
+  const Chart chart = study.chart.value_or(Chart{names, false, true});
+  toml::array figures;
+  for (const auto& name : chart.figures) figures.push_back(name);
   toml::table provenance;
   for (const auto& [name, value] : build_info()) provenance.insert(name, value);
   const toml::table description{
@@ -81,6 +84,10 @@ std::string json_description(const Study& study) {
                            {"labels", study.axis.labels}}},
       {"series", series},
       {"errors", errors},
+      {"chart", toml::table{{"figures", figures},
+                            {"distribution", chart.distribution},
+                            {"log", chart.log},
+                            {"cost", !study.chart}}},
       {"published_source", study.published_source},
       {"provenance", provenance},
   };

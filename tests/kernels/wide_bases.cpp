@@ -69,10 +69,7 @@ void fill_randomly(const Fields& fields, Random& random) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("wide bases: mass, momentum and force pass without loss", "",
-                   (QuadraticBSplineBasis<1, double>), (QuadraticBSplineBasis<2, double>),
-                   (QuadraticBSplineBasis<3, double>), (UniformGimpBasis<1, double>),
-                   (UniformGimpBasis<2, double>), (UniformGimpBasis<3, double>)) {
+TEMPLATE_LIST_TEST_CASE("wide bases: mass, momentum and force pass without loss", "", WideBases) {
   constexpr int Dim = TestType::dimension;
   const auto inner = make_grid<Dim, double>();
   const auto basis = WideBasis<TestType>::on(inner);
@@ -160,10 +157,7 @@ TEMPLATE_TEST_CASE("ghost nodes mirror their images; folding is the transpose", 
     }
 }
 
-TEMPLATE_TEST_CASE("at a wall, held components vanish and the others have no slope", "",
-                   (QuadraticBSplineBasis<1, double>), (QuadraticBSplineBasis<2, double>),
-                   (QuadraticBSplineBasis<3, double>), (UniformGimpBasis<1, double>),
-                   (UniformGimpBasis<2, double>), (UniformGimpBasis<3, double>)) {
+TEMPLATE_LIST_TEST_CASE("at a wall, held components vanish and the others have no slope", "", WideBases) {
   constexpr int Dim = TestType::dimension;
   Random random(96);
   for (int trial = 0; trial < 20; ++trial) {
@@ -253,10 +247,8 @@ struct Symmetric {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("a corner between planes of symmetry moves as it does in the whole body", "",
-                   (QuadraticBSplineBasis<1, double>), (QuadraticBSplineBasis<2, double>),
-                   (QuadraticBSplineBasis<3, double>), (UniformGimpBasis<1, double>),
-                   (UniformGimpBasis<2, double>), (UniformGimpBasis<3, double>)) {
+TEMPLATE_LIST_TEST_CASE("a corner between planes of symmetry moves as it does in the whole body", "",
+                        WideBases) {
   constexpr int Dim = TestType::dimension;
   Symmetric<TestType> whole(true), corner(false);
   UniformVirtualStress<Dim, double> pressure;
@@ -308,10 +300,8 @@ TEMPLATE_TEST_CASE("a corner between planes of symmetry moves as it does in the 
   CHECK_THAT(of_corner.kinetic_energy * (1 << Dim), WithinRel(of_whole.kinetic_energy, 1e-10));
 }
 
-TEMPLATE_TEST_CASE("a patch under uniform stress is in balance at any offset of the mesh", "",
-                   (QuadraticBSplineBasis<1, double>), (QuadraticBSplineBasis<2, double>),
-                   (QuadraticBSplineBasis<3, double>), (UniformGimpBasis<1, double>),
-                   (UniformGimpBasis<2, double>), (UniformGimpBasis<3, double>)) {
+TEMPLATE_LIST_TEST_CASE("a patch under uniform stress is in balance at any offset of the mesh", "",
+                        WideBases) {
   // A bar between rollers at all faces but the last: it ends at any place within a cell, and there the
   // virtual stress is the one it has. Nothing else acts, so no node may feel a force in a free component.
   constexpr int Dim = TestType::dimension;

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// The uniform grid's numbering and the multilinear basis on it.
-#include <set>
-
-#include "support.hpp"
+#include "bins_of_basis.hpp"
 
 using namespace vsb;
 using namespace vsb::test;
@@ -17,6 +15,8 @@ TEST_CASE("nodes and cells are numbered along x first") {
   CHECK(grid.node_stride(1) == 4);
   CHECK(grid.node_stride(2) == 12);
   CHECK(grid.node_index({{1, 2, 3}}) == 1 + 2 * 4 + 3 * 12);
+  CHECK(grid.cell_index({{2, 1, 3}}) == 2 + 1 * 3 + 3 * 6);
+  CHECK(grid.row_index({{2, 1, 3}}) == 1 + 3 * 2);
   const auto x = grid.node_position(1 + 2 * 4 + 3 * 12);
   CHECK(x[0] == 1);
   CHECK(x[1] == 14);
@@ -25,6 +25,7 @@ TEST_CASE("nodes and cells are numbered along x first") {
   const UniformGrid<1, float> line({{-1}}, {{0.5f}}, {{7}});
   CHECK(line.node_count() == 8);
   CHECK(line.node_position(7)[0] == 2.5f);
+  CHECK(line.row_index({{6}}) == 0);
 }
 
 TEMPLATE_TEST_CASE_SIG("node numbers and node coordinates are inverse", "", ((int Dim), Dim), 1, 2, 3) {
@@ -171,20 +172,7 @@ TEMPLATE_TEST_CASE_SIG("bins, their support nodes and their points belong togeth
     const int bin = basis.bin(x);
     CHECK((bin >= 0 && bin < basis.bin_count()));
     CHECK(cell_bins.insert(bin).second);  // no two cells share a bin
-    const auto shape = basis.shape(x);
-    for (int a = 0; a < basis.support; ++a) {
-      CHECK(basis.node_of_bin(bin, a) == shape.node[a]);
-      CHECK(basis.bin_of_node(shape.node[a], a) == bin);
-    }
+    check_nodes_of_bin(basis, bin, x);
   });
-  int pairs = 0;
-  for (int node = 0; node < basis.node_count(); ++node)
-    for (int a = 0; a < basis.support; ++a) {
-      const int bin = basis.bin_of_node(node, a);
-      if (bin < 0) continue;
-      ++pairs;
-      CHECK(cell_bins.count(bin) == 1);  // so that a node at a face asks no bin beyond it
-      CHECK(basis.node_of_bin(bin, a) == node);
-    }
-  CHECK(pairs == grid.cell_count() * basis.support);
+  check_bins_of_nodes(basis, cell_bins);
 }
