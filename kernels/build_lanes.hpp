@@ -217,6 +217,7 @@ struct FixLaneNodes {
       ijk[1] = lanes.box.first[1] + row % lanes.node_rows_per_plane();
       ijk[2] = lanes.box.first[2] + row / lanes.node_rows_per_plane();
     }
+    for (int i = 0; i < Dim; ++i) nodes.fixed(chunk, i) = 0;
     for (int l = 0; l < width; ++l) {
       ijk[0] = lanes.box.first[0] + place % per_row * width + l;
       ComponentMask fixed = 0;
@@ -224,7 +225,8 @@ struct FixLaneNodes {
         if (ijk[i] == 0) fixed = static_cast<ComponentMask>(fixed | walls.fixed[i][0]);
         if (ijk[i] == grid_cells[i]) fixed = static_cast<ComponentMask>(fixed | walls.fixed[i][1]);
       }
-      nodes.fixed(static_cast<size_t>(chunk * width + l)) = fixed;
+      for (int i = 0; i < Dim; ++i)
+        if (fixed >> i & 1) nodes.fixed(chunk, i) |= std::uint32_t(1) << l;
     }
   }
 };
@@ -262,9 +264,8 @@ void number_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const Cell
   const Kokkos::RangePolicy<Exec> once(exec, 0, 1);
   auto& lanes = m.lanes;
   lanes.box = box;
-  const int per_row = lanes.groups_per_row(), places = lanes.row_count() * per_row,
-            layers = lanes.layers(), planes = Dim == 1 ? 1 : layers + 1,
-            chunks = planes * lanes.node_rows_per_plane() * (per_row + 1);
+  const int per_row = lanes.groups_per_row(), places = lanes.row_count() * per_row, layers = lanes.layers(),
+            planes = Dim == 1 ? 1 : layers + 1, chunks = planes * lanes.node_rows_per_plane() * (per_row + 1);
   struct {
     int groups, slots;
   } total{};
@@ -289,13 +290,13 @@ void number_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const Cell
     m.nodes.data = decltype(m.nodes.data)(
         "vsb::lane_nodes", static_cast<size_t>(padded_rows<Real>(node_count + node_count / 16)),
         static_cast<size_t>(m.nodes.column_count));
-    m.nodes.fixed = decltype(m.nodes.fixed)("vsb::lane_nodes_fixed", m.nodes.data.extent(0));
+    m.nodes.fixed = decltype(m.nodes.fixed)("vsb::lane_nodes_fixed",
+                                            m.nodes.data.extent(0) / static_cast<size_t>(lanes.width));
   } else {
     Kokkos::deep_copy(exec, m.nodes.data, Real(0));
   }
-  Kokkos::parallel_for(
-      "vsb::fix_lane_nodes", Kokkos::RangePolicy<Exec>(exec, 0, chunks),
-      kernel::FixLaneNodes<Dim, Real, Device>{lanes, m.nodes, m.grid.cells, m.walls});
+  Kokkos::parallel_for("vsb::fix_lane_nodes", Kokkos::RangePolicy<Exec>(exec, 0, chunks),
+                       kernel::FixLaneNodes<Dim, Real, Device>{lanes, m.nodes, m.grid.cells, m.walls});
 }
 
 /// Lists with room for all particles of their layers; memory that nobody writes to is not taken.

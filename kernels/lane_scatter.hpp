@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Between the nodes of a group of cell lanes and polynomials on its cells, one cell per lane: gathering nodal
-/// fields, and adding moments to the sums of a layer.
+/// Between the nodes of a group of cell lanes and polynomials on its cells, one cell per lane: gathering
+/// nodal fields, and adding moments to the sums of a layer.
 #pragma once
 
 #include <vsb/physics/cell_polynomial.hpp>

@@ -83,8 +83,7 @@ int pack_lanes(const Exec& exec, const Particles<Dim, Real, Device>& particles,
 /// Sums up for the first step, or anew after a change of loads; `virtual_stress` is the field at the end of
 /// the step to come.
 template <class Exec, class Field, int Dim, class Real, class Device>
-void prepare_lane_step(const Exec& exec, const LaneState<Dim, Real, Device>& s,
-                       const Field& virtual_stress) {
+void prepare_lane_step(const Exec& exec, const LaneState<Dim, Real, Device>& s, const Field& virtual_stress) {
   detail::sum_lanes(exec, s, virtual_stress);
 }
 
@@ -102,14 +101,16 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
                            {m.nodes}, options.gravity, m.grid.inverse_spacing, options.damping, options.dt});
   Kokkos::parallel_for("vsb::accelerate_lanes", detail::over_layers(exec, s),
                        kernel::AccelerateLanes<Dim, Real, Device>{m.lanes, m.nodes});
-  Kokkos::parallel_for("vsb::remap_lane_nodes", over_chunks,
-                       kernel::RemapLaneNodes<Dim, Real, Device>{
-                           {m.nodes}, options.dt * m.grid.inverse_spacing[0]});
+  Kokkos::parallel_for(
+      "vsb::remap_lane_nodes", over_chunks,
+      kernel::RemapLaneNodes<Dim, Real, Device>{{m.nodes}, options.dt * m.grid.inverse_spacing[0]});
   detail::with_cubic(s, [&](auto cubic) {
     Kokkos::parallel_for(
         "vsb::move_lanes", detail::over_layers(exec, s),
         kernel::MoveLanes<decltype(cubic)::value, Field, Material, Volume, Dim, Real, Device>{
-            detail::loaded_lanes(s), m.nodes, next_virtual_stress, material, volume, m.leavers});
+            detail::loaded_lanes(s),
+            {m.lanes, m.nodes, m.grid, material, volume, m.leavers},
+            next_virtual_stress});
   });
   if (count_leavers(exec, m) == 0) return -1;
   if (take_in_leavers(exec, m, next_virtual_stress, s.boundary.tractions) > 0) {

@@ -103,7 +103,8 @@ template <bool Cubic, int Dim, class Real, class Device>
   using P = typename Lanes<Real>::Pack;
   add_mass_and_momentum(lanes, group, sums);
   CellPolynomial<Dim, P> f[Dim];
-  force<Cubic>(lanes, group, inverse_spacing, [&](size_t entry) { return lanes.load_stress(entry); }, f);
+  force<Cubic>(
+      lanes, group, inverse_spacing, [&](size_t entry) { return lanes.load_stress(entry); }, f);
   static_for<Dim>([&](auto i) VSB_UNROLLED { sums.add_moments(1 + Dim + i, group, f[i]); });
 }
 

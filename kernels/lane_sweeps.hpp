@@ -3,7 +3,8 @@
 /// The sweeps over cell lanes of one MUSL step, a layer each call:
 ///   A  mass, momentum and force of the nodes (kernels/lane_sums.hpp);
 ///   B  v_p <- v_p + dt sum_I N_Ip a_I (FLIP), and the momentum of the re-map, sum_p N_Ip m_p v_p;
-///   C  L = sum_I v*_I (x) grad N_Ip,  sigma <- material(sigma, L dt),  V <- V det(I + dt L) or V exp(dt tr L),
+///   C  L = sum_I v*_I (x) grad N_Ip,  sigma <- material(sigma, L dt),  V <- V det(I + dt L) or V exp(dt tr
+///   L),
 ///      x_p <- x_p + dt sum_I N_Ip v_I; particles that leave their cell go to the layer's list of leavers;
 ///   C and A of the next step in one, while the particles are at hand.
 ///
@@ -55,7 +56,8 @@ struct AccelerateLanes {
   [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void accelerate(const LaneGroup<Dim>& group,
                                                                   Momentum& sums) const {
     CellPolynomial<Dim, P> dv[Dim], p[Dim];
-    static_for<Dim>([&](auto i) VSB_UNROLLED { coefficients_of(nodes, nodes.increment_column + i, group, dv[i]); });
+    static_for<Dim>([&](auto i)
+                        VSB_UNROLLED { coefficients_of(nodes, nodes.increment_column + i, group, dv[i]); });
     for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
       const auto xi = lanes.load_xi(entry);
       static_for<Dim>([&](auto i) VSB_UNROLLED {
@@ -68,31 +70,19 @@ struct AccelerateLanes {
   }
 };
 
-/// Sweep C, and A of the next step.
-template <bool Cubic, class Field, class Material, class Volume, int Dim, class Real, class Device>
-struct MoveLanes {
+/// Sweep C for one group.
+template <bool Cubic, class Material, class Volume, int Dim, class Real, class Device>
+struct MoveGroup {
   using P = typename Lanes<Real>::Pack;
-  LoadedLanes<Dim, Real, Device> on;
+  CellLanes<Dim, Real, Device> lanes;
   LaneNodes<Dim, Real, Device> nodes;
-  Field virtual_stress;
+  UniformGrid<Dim, Real> grid;
   Material material;
   Volume volume;
   Leavers<Dim, Real, Device> leavers;
 
-  KOKKOS_FUNCTION void operator()(int layer) const {
-    StepSums<Dim, Real, Device> sums(on.lanes, nodes, layer);
-    leavers.count(layer) = 0;
-    for (int g = on.lanes.layer_first(layer); g < on.lanes.layer_first(layer + 1); ++g) {
-      const auto& group = on.lanes.groups(g);
-      move(group, layer);
-      sums.begin(group);
-      sum_group_with<Cubic>(on, group, virtual_stress, sums);
-    }
-    sums.end();
-  }
-
-  [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void move(const LaneGroup<Dim>& group, int layer) const {
-    const auto& lanes = on.lanes;
+  [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void operator()(const LaneGroup<Dim>& group,
+                                                                  int layer) const {
     CellPolynomial<Dim, P> dx[Dim], u[Dim];
     static_for<Dim>([&](auto i) VSB_UNROLLED {
       coefficients_of(nodes, nodes.displacement_column + i, group, dx[i]);
@@ -104,10 +94,10 @@ struct MoveLanes {
       static_for<Dim>([&](auto i) VSB_UNROLLED {
         static_for<Dim>([&](auto j) VSB_UNROLLED {
           L(i, j) = derivative_at<j, Dim>(u[i], xi);
-          if constexpr (!Cubic) L(i, j) *= P(on.grid.inverse_spacing[j] * on.grid.spacing[0]);
+          if constexpr (!Cubic) L(i, j) *= P(grid.inverse_spacing[j] * grid.spacing[0]);
         });
       });
-      advance(lanes, entry, L);
+      advance(entry, L);
       const P V = lanes.load(lanes.volume_column, entry);
       lanes.store(lanes.volume_column, entry, volume(V, L, P(1)));
       Vector<Dim, P> moved;
@@ -124,8 +114,7 @@ struct MoveLanes {
     return !any(!inside);
   }
 
-  KOKKOS_FORCEINLINE_FUNCTION void advance(const CellLanes<Dim, Real, Device>& lanes, size_t entry,
-                                           const Matrix<Dim, P>& L) const {
+  KOKKOS_FORCEINLINE_FUNCTION void advance(size_t entry, const Matrix<Dim, P>& L) const {
     constexpr int remembered = Material::template state_size<Dim>();
     const auto sigma = lanes.load_stress(entry);
     if constexpr (remembered == 0) {
@@ -149,7 +138,6 @@ struct MoveLanes {
 
   /// Takes the particles of a slot that left their cell to the layer's list.
   [[gnu::noinline]] KOKKOS_FUNCTION void leave(const LaneGroup<Dim>& group, int layer, size_t entry) const {
-    const auto& lanes = on.lanes;
     for (int l = 0; l < P::width; ++l) {
       const size_t e = entry + static_cast<size_t>(l);
       if (lanes.id(e) < 0) continue;
@@ -170,10 +158,10 @@ struct MoveLanes {
     constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
     bool out = false;
     for (int i = 0; i < Dim; ++i) {
-      const Real round_off = 16 * static_cast<Real>(on.grid.cells[i]) * epsilon;
+      const Real round_off = 16 * static_cast<Real>(grid.cells[i]) * epsilon;
       if (xi[i] >= Real(0) && xi[i] < Real(1)) continue;
       if (cell[i] == 0 && xi[i] < Real(0) && xi[i] >= -round_off) continue;
-      if (cell[i] == on.grid.cells[i] - 1 && xi[i] >= Real(1) && xi[i] <= Real(1) + round_off) continue;
+      if (cell[i] == grid.cells[i] - 1 && xi[i] >= Real(1) && xi[i] <= Real(1) + round_off) continue;
       out = true;
       const Real whole = math::floor(xi[i]);
       if (!(math::abs(whole) < Real(1 << 20))) {
@@ -188,6 +176,26 @@ struct MoveLanes {
       }
     }
     return out;
+  }
+};
+
+/// Sweep C, and A of the next step.
+template <bool Cubic, class Field, class Material, class Volume, int Dim, class Real, class Device>
+struct MoveLanes {
+  LoadedLanes<Dim, Real, Device> on;
+  MoveGroup<Cubic, Material, Volume, Dim, Real, Device> move;
+  Field virtual_stress;
+
+  KOKKOS_FUNCTION void operator()(int layer) const {
+    StepSums<Dim, Real, Device> sums(on.lanes, move.nodes, layer);
+    move.leavers.count(layer) = 0;
+    for (int g = on.lanes.layer_first(layer); g < on.lanes.layer_first(layer + 1); ++g) {
+      const auto& group = on.lanes.groups(g);
+      move(group, layer);
+      sums.begin(group);
+      sum_group_with<Cubic>(on, group, virtual_stress, sums);
+    }
+    sums.end();
   }
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The sums of a group of cell lanes with loaded nodes: those of kernels/lane_sums.hpp, and at the nodes where
-/// a traction acts its virtual stress (Eqs. 27, 28), sum_p V_p (sbar . grad N_a + fbar N_a).
+/// The sums of a group of cell lanes with loaded nodes: those of kernels/lane_sums.hpp, and at the nodes
+/// where a traction acts its virtual stress (Eqs. 27, 28), sum_p V_p (sbar . grad N_a + fbar N_a).
 ///
 /// A uniform sbar needs only the volume moments sum_p V_p q_k; where a cell has all its nodes loaded or none,
 /// not even these: sigma - sbar takes the place of sigma. Any other field is evaluated at the particles.
@@ -73,7 +73,8 @@ KOKKOS_FORCEINLINE_FUNCTION void add_uniform(const SymmetricTensor<Dim, Real>& b
       add_where<Dim>(bits, t, f[a]);
     } else {
       Vector<Dim, P> c;
-      static_for<Dim>([&](auto i) VSB_UNROLLED { c[i] = P(bar[symmetric_index(a, i)] * inverse_spacing[i]); });
+      static_for<Dim>([&](auto i)
+                          VSB_UNROLLED { c[i] = P(bar[symmetric_index(a, i)] * inverse_spacing[i]); });
       auto t = gradient_moments<Dim>(c, volume);
       nodes_from_moments<Dim>(t);
       add_where<Dim>(bits, t, f[a]);
@@ -128,8 +129,9 @@ template <bool Cubic, class Field, int Dim, class Real, class Device>
   SymmetricTensor<Dim, P> in_lane;
   static_for<in_lane.size>([&](auto c) VSB_UNROLLED { in_lane[c] = keep_lanes(group.loaded[0], P(bar[c])); });
   CellPolynomial<Dim, P> f[Dim];
-  force<Cubic>(lanes, group, on.grid.inverse_spacing,
-               [&](size_t entry) { return lanes.load_stress(entry) - in_lane; }, f);
+  force<Cubic>(
+      lanes, group, on.grid.inverse_spacing, [&](size_t entry) { return lanes.load_stress(entry) - in_lane; },
+      f);
   static_for<Dim>([&](auto i) VSB_UNROLLED { sums.add_moments(1 + Dim + i, group, f[i]); });
 }
 
@@ -143,8 +145,8 @@ template <bool Cubic, class Field, int Dim, class Real, class Device>
   const auto& lanes = on.lanes;
   add_mass_and_momentum(lanes, group, sums);
   CellPolynomial<Dim, P> f[Dim];
-  force<Cubic>(lanes, group, on.grid.inverse_spacing, [&](size_t entry) { return lanes.load_stress(entry); },
-               f);
+  force<Cubic>(
+      lanes, group, on.grid.inverse_spacing, [&](size_t entry) { return lanes.load_stress(entry); }, f);
   static_for<Dim>([&](auto i) VSB_UNROLLED { nodes_from_moments<Dim>(f[i]); });
   if constexpr (Field::uniform) {
     CellPolynomial<Dim, P> volume;

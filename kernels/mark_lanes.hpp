@@ -15,14 +15,14 @@ namespace vsb {
 template <int Dim, class Device>
 struct LaneBoundary {
   using Rows = typename CellBits<Device>::Rows;
-  CellBits<Device> bits;                  ///< of the box; bits.occupied is kept up to date by every sweep
-  Rows marked, active;                    ///< [row of nodes of the box][word]: N1, and nodes with mass
-  Kokkos::View<int*, Device> changed;     ///< [row of nodes]: 1 where tractions changed
-  BoundaryNodes<Device> tractions;        ///< [node of the lanes]: those that act there
-  TractionMask everywhere = 0;            ///< tractions declared at all nodes
-  BoundaryNodes<Device> declared;         ///< [node of the grid]: tractions declared at some; may be empty
-  TractionMask conservative = 0;          ///< those that act at all active nodes
-  int count = 0;                          ///< nodes at which a traction acts
+  CellBits<Device> bits;               ///< of the box; bits.occupied is kept up to date by every sweep
+  Rows marked, active;                 ///< [row of nodes of the box][word]: N1, and nodes with mass
+  Kokkos::View<int*, Device> changed;  ///< [row of nodes]: 1 where tractions changed
+  BoundaryNodes<Device> tractions;     ///< [node of the lanes]: those that act there
+  TractionMask everywhere = 0;         ///< tractions declared at all nodes
+  BoundaryNodes<Device> declared;      ///< [node of the grid]: tractions declared at some; may be empty
+  TractionMask conservative = 0;       ///< those that act at all active nodes
+  int count = 0;                       ///< nodes at which a traction acts
 };
 
 namespace kernel {
@@ -201,8 +201,10 @@ void mark_lanes(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes,
     tiling.last[i] = math::min(lanes.box.cells[i], grid_cells[i] - lanes.box.first[i]) - 1;
   }
   const Kokkos::RangePolicy<Exec> over_words(exec, 0, tiling.cell_row_count() * tiling.words);
-  Kokkos::parallel_for("vsb::find_exterior_cells", over_words, kernel::FindExterior<Dim, Device>{b.bits, tiling});
-  Kokkos::parallel_for("vsb::find_boundary_cells", over_words, kernel::FindBoundary<Dim, Device>{b.bits, tiling});
+  Kokkos::parallel_for("vsb::find_exterior_cells", over_words,
+                       kernel::FindExterior<Dim, Device>{b.bits, tiling});
+  Kokkos::parallel_for("vsb::find_boundary_cells", over_words,
+                       kernel::FindBoundary<Dim, Device>{b.bits, tiling});
   Kokkos::parallel_for("vsb::mark_lane_nodes", Kokkos::RangePolicy<Exec>(exec, 0, tiling.node_row_count()),
                        kernel::MarkLaneNodes<Dim, Real, Device>{lanes, b, tiling, grid_cells, anew});
   Kokkos::parallel_for("vsb::load_groups", Kokkos::RangePolicy<Exec>(exec, 0, lanes.group_count),

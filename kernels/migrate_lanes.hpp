@@ -234,8 +234,8 @@ struct TakeColumn {
   int column;
   KOKKOS_FUNCTION void operator()(int e) const {
     const int from = source(e);
-    *lanes.at(column, static_cast<size_t>(e)) = from >= 0    ? before(from)
-                                                : from <= -2 ? leavers.data(-2 - from, column)
+    *lanes.at(column, static_cast<size_t>(e)) = from >= 0      ? before(from)
+                                                : from <= -2   ? leavers.data(-2 - from, column)
                                                 : column < Dim ? Real(0.5)
                                                                : Real(0);
   }
@@ -271,11 +271,10 @@ template <class Exec, class Field, int Dim, class Real, class Device>
 int take_in_leavers(const Exec& exec, const LaneMemory<Dim, Real, Device>& m, const Field& virtual_stress,
                     const BoundaryNodes<Device>& tractions) {
   int homeless = 0;
-  Kokkos::parallel_reduce(
-      "vsb::take_in_leavers", Kokkos::RangePolicy<Exec>(exec, 0, m.lanes.layers()),
-      kernel::TakeInLeavers<Dim, Real, Device, Field>{m.lanes, m.nodes, m.leavers, m.grid, virtual_stress,
-                                                      tractions, true},
-      homeless);
+  Kokkos::parallel_reduce("vsb::take_in_leavers", Kokkos::RangePolicy<Exec>(exec, 0, m.lanes.layers()),
+                          kernel::TakeInLeavers<Dim, Real, Device, Field>{m.lanes, m.nodes, m.leavers, m.grid,
+                                                                          virtual_stress, tractions, true},
+                          homeless);
   exec.fence();
   return homeless;
 }
@@ -289,9 +288,8 @@ int repack_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m) {
   const Kokkos::RangePolicy<Exec> once(exec, 0, 1);
   const Cells before = m.lanes;
   const Kokkos::View<int*, Device> range("vsb::occupied_range", 2 * Dim + 1);
-  Kokkos::parallel_for(
-      "vsb::occupied_range", once,
-      kernel::OccupiedRange<Dim, Real, Device>{before, m.leavers, m.grid.cells, range});
+  Kokkos::parallel_for("vsb::occupied_range", once,
+                       kernel::OccupiedRange<Dim, Real, Device>{before, m.leavers, m.grid.cells, range});
   exec.fence();
   const auto found = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), range);
   if (found(2 * Dim) >= 0) return found(2 * Dim);
@@ -324,11 +322,10 @@ int repack_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m) {
                                                                   lanes.columns());
   const Kokkos::RangePolicy<Exec> over_entries(exec, 0, entries);
   const auto entries_before = static_cast<size_t>(before.slot_count * before.width);
-  const Kokkos::View<Real*, Device> copy(Kokkos::view_alloc("vsb::column_before", Kokkos::WithoutInitializing),
-                                         entries_before);
+  const Kokkos::View<Real*, Device> copy(
+      Kokkos::view_alloc("vsb::column_before", Kokkos::WithoutInitializing), entries_before);
   for (int c = 0; c < lanes.columns(); ++c) {
-    Kokkos::deep_copy(exec, copy,
-                      Kokkos::subview(before.data, std::make_pair(size_t(0), entries_before), c));
+    Kokkos::deep_copy(exec, copy, Kokkos::subview(before.data, std::make_pair(size_t(0), entries_before), c));
     Kokkos::parallel_for("vsb::take_column", over_entries,
                          kernel::TakeColumn<Dim, Real, Device>{copy, lanes, m.leavers, source, c});
   }

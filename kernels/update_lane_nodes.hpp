@@ -25,44 +25,33 @@ struct LaneNodeRows {
     return Dim == 1 ? lower : lower + nodes.load(nodes.upper_sums + column, node);
   }
   /// Zero where component i is prescribed.
-  KOKKOS_FORCEINLINE_FUNCTION P free_component(P value, int node, int i) const {
-    for (int l = 0; l < P::width; ++l)
-      if (nodes.fixed(static_cast<size_t>(node + l)) >> i & 1) value.set(l, Real(0));
-    return value;
-  }
-  KOKKOS_FORCEINLINE_FUNCTION bool any_fixed(int node) const {
-    ComponentMask any = 0;
-    for (int l = 0; l < P::width; ++l) any |= nodes.fixed(static_cast<size_t>(node + l));
-    return any != 0;
+  KOKKOS_FORCEINLINE_FUNCTION P free_component(P value, int chunk, int i) const {
+    const auto fixed = nodes.fixed(chunk, i);
+    return fixed == 0 ? value : keep_lanes(~fixed, value);
   }
 };
 
 template <int Dim, class Real, class Device>
 struct UpdateLaneNodes : LaneNodeRows<Dim, Real, Device> {
   using Base = LaneNodeRows<Dim, Real, Device>;
-  using typename Base::P;
   using Base::nodes;
+  using typename Base::P;
   Vector<Dim, Real> gravity;          ///< m/s^2
   Vector<Dim, Real> inverse_spacing;  ///< 1/m
   Real damping, dt;
 
   KOKKOS_FUNCTION void operator()(int chunk) const {
     const int node = chunk * P::width;
-    const bool fixed = this->any_fixed(node);
     const P m = this->sum(0, node);
     const P inverse_mass = math::select(m > P(Real(0)), P(Real(1)) / m, P(Real(0)));
     inverse_mass.store(nodes.at(nodes.inverse_mass_column, node));
     static_for<Dim>([&](auto i) VSB_UNROLLED {
       const P v = this->sum(1 + i, node) * inverse_mass;
       const P f = this->sum(1 + Dim + i, node) + m * P(gravity[i]);
-      P dv = cundall_damped(f, v, P(damping)) * inverse_mass * P(dt);
-      P dx = (v + dv) * P(dt * inverse_spacing[i]);
-      if (fixed) {
-        dv = this->free_component(dv, node, i);
-        dx = this->free_component(dx, node, i);
-      }
-      dv.store(nodes.at(nodes.increment_column + i, node));
-      dx.store(nodes.at(nodes.displacement_column + i, node));
+      const P dv = cundall_damped(f, v, P(damping)) * inverse_mass * P(dt);
+      const P dx = (v + dv) * P(dt * inverse_spacing[i]);
+      this->free_component(dv, chunk, i).store(nodes.at(nodes.increment_column + i, node));
+      this->free_component(dx, chunk, i).store(nodes.at(nodes.displacement_column + i, node));
     });
   }
 };
@@ -70,18 +59,16 @@ struct UpdateLaneNodes : LaneNodeRows<Dim, Real, Device> {
 template <int Dim, class Real, class Device>
 struct RemapLaneNodes : LaneNodeRows<Dim, Real, Device> {
   using Base = LaneNodeRows<Dim, Real, Device>;
-  using typename Base::P;
   using Base::nodes;
+  using typename Base::P;
   Real factor;  ///< dt / h_0
 
   KOKKOS_FUNCTION void operator()(int chunk) const {
     const int node = chunk * P::width;
-    const bool fixed = this->any_fixed(node);
     const P scale = nodes.load(nodes.inverse_mass_column, node) * P(factor);
     static_for<Dim>([&](auto i) VSB_UNROLLED {
-      P u = this->sum(1 + i, node) * scale;
-      if (fixed) u = this->free_component(u, node, i);
-      u.store(nodes.at(nodes.remapped_column + i, node));
+      this->free_component(this->sum(1 + i, node) * scale, chunk, i)
+          .store(nodes.at(nodes.remapped_column + i, node));
     });
   }
 };

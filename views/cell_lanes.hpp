@@ -2,8 +2,8 @@
 /// \file
 /// Particles packed by cell, one cell in every lane of a pack.
 ///
-/// The cells of a row along x are taken `width` at a time, as a group. Particle number s of the cell in lane l
-/// of a group is entry (first + s) * width + l of every column; a lane that has fewer particles than the
+/// The cells of a row along x are taken `width` at a time, as a group. Particle number s of the cell in lane
+/// l of a group is entry (first + s) * width + l of every column; a lane that has fewer particles than the
 /// group has slots is filled up with ghosts, without mass and volume, so that the arithmetic needs no masks.
 /// Where a particle is, the group and the lane say up to the cell, and xi in [0, 1)^Dim within it.
 ///
@@ -31,16 +31,17 @@ enum class GroupLoad : std::uint8_t {
 /// `width` cells side by side, and where their particles and nodes are.
 template <int Dim>
 struct LaneGroup {
-  static constexpr int corner_rows = 1 << (Dim - 1);  ///< rows of nodes along x; bit i: upper in direction 1 + i
-  int first;                         ///< slot
-  int slots;                         ///< in use
-  int capacity;                      ///< slots that it may use
-  int x;                             ///< cells x * width, ... of the box's row
-  int row;                           ///< of cells in the box
-  int node[corner_rows];             ///< the lower node of lane 0 in every corner row
+  static constexpr int corner_rows =
+      1 << (Dim - 1);     ///< rows of nodes along x; bit i: upper in direction 1 + i
+  int first;              ///< slot
+  int slots;              ///< in use
+  int capacity;           ///< slots that it may use
+  int x;                  ///< cells x * width, ... of the box's row
+  int row;                ///< of cells in the box
+  int node[corner_rows];  ///< the lower node of lane 0 in every corner row
   GroupLoad load;
-  TractionMask tractions;            ///< of the loaded nodes, where they have the same
-  std::uint64_t loaded[corner_rows]; ///< bit l: the lower node of lane l is loaded, up to l = width
+  TractionMask tractions;             ///< of the loaded nodes, where they have the same
+  std::uint64_t loaded[corner_rows];  ///< bit l: the lower node of lane l is loaded, up to l = width
 };
 
 /// A box of cells of a grid.
@@ -65,15 +66,15 @@ struct CellLanes {
                        volume_column = 2 * Dim + 1, stress_column = 2 * Dim + 2,
                        state_column = 2 * Dim + 2 + stress_size;
 
-  Columns data;                                  ///< [slot * width + lane][column]
-  Ints id;                                       ///< [slot * width + lane]: number of the particle; ghosts: -1
+  Columns data;  ///< [slot * width + lane][column]
+  Ints id;       ///< [slot * width + lane]: number of the particle; ghosts: -1
   Kokkos::View<LaneGroup<Dim>*, Device> groups;  ///< by layer, row and x
   Ints layer_first;                              ///< [layers + 1]: the groups of a layer
   Ints plane_first;                              ///< [layers + 2]: the nodes of a plane
-  Ints group_at;                                 ///< [row of cells][groups per row]: number, -1 where there is none
-  Ints chunk_at;                                 ///< [row of nodes][groups per row + 1]: `width` nodes side by side
+  Ints group_at;  ///< [row of cells][groups per row]: number, -1 where there is none
+  Ints chunk_at;  ///< [row of nodes][groups per row + 1]: `width` nodes side by side
   CellBox<Dim> box;
-  int state_size = 0;                            ///< numbers of material state per particle
+  int state_size = 0;  ///< numbers of material state per particle
   int group_count = 0, slot_count = 0, node_count = 0;
   int particle_count = 0;
 
@@ -148,13 +149,13 @@ struct LaneNodes {
   static constexpr int sum_columns = 1 + 2 * Dim;
   static constexpr int lower_sums = 0, upper_sums = sum_columns, increment_column = 2 * sum_columns,
                        displacement_column = increment_column + Dim,
-                       remapped_column = displacement_column + Dim, inverse_mass_column = remapped_column + Dim,
-                       column_count = inverse_mass_column + 1;
+                       remapped_column = displacement_column + Dim,
+                       inverse_mass_column = remapped_column + Dim, column_count = inverse_mass_column + 1;
   using P = typename Lanes<Real>::Pack;
   Kokkos::View<Real**, Kokkos::LayoutLeft, Device> data;  ///< [node][column]: lower and upper sums of mass,
                                                           ///< momentum, force; dt a; dt v in cells; dt v* in
                                                           ///< m; 1 / m
-  Kokkos::View<ComponentMask*, Device> fixed;             ///< [node]
+  Kokkos::View<std::uint32_t* [Dim], Device> fixed;       ///< [chunk][component]: bit l: prescribed in lane l
 
   KOKKOS_FORCEINLINE_FUNCTION Real* at(int column, int node) const {
     return data.data() + static_cast<size_t>(column) * data.stride(1) + node;

@@ -147,7 +147,8 @@ struct Lanes {
 
 namespace detail {
 template <class T, int W, int... L>
-KOKKOS_FORCEINLINE_FUNCTION Pack<T, W> shift_in(Pack<T, W> a, Pack<T, W> b, std::integer_sequence<int, L...>) {
+KOKKOS_FORCEINLINE_FUNCTION Pack<T, W> shift_in(Pack<T, W> a, Pack<T, W> b,
+                                                std::integer_sequence<int, L...>) {
   return typename Pack<T, W>::Native(__builtin_shufflevector(a.v, b.v, (W - 1 + L)...));
 }
 }  // namespace detail
