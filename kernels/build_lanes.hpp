@@ -6,6 +6,7 @@
 /// same whatever ran in parallel.
 #pragma once
 
+#include <vector>
 #include <vsb/kernels/locate_particles.hpp>
 #include <vsb/physics/uniform_grid.hpp>
 #include <vsb/physics/walls.hpp>
@@ -82,46 +83,59 @@ struct CountGroups {
   }
 };
 
-/// Numbers groups and nodes, one after the other; a single work item.
+/// Lines the groups up, one after the other; a single work item.
 template <int Dim, class Real, class Device>
-struct NumberGroups {
+struct PlaceGroups {
   CellLanes<Dim, Real, Device> lanes;
   typename CellLanes<Dim, Real, Device>::Ints count;
   int slack;
 
+  KOKKOS_FUNCTION void operator()(int) const {
+    const int per_row = lanes.groups_per_row(), places = lanes.row_count() * per_row;
+    int group = 0, slot = 0;
+    for (int place = 0; place < places; ++place) {
+      const int most = group_slots(count, place, Lanes<Real>::width);
+      if (most == 0) continue;
+      auto& g = lanes.groups(group++);
+      g = {};
+      g.first = slot;
+      g.slots = most;
+      g.capacity = most + slack;
+      g.x = place % per_row;
+      g.row = place / per_row;
+      slot += g.capacity;
+    }
+  }
+};
+
+/// Numbers the nodes of the groups, and says where in the box groups and nodes are; a single work item.
+template <int Dim, class Real, class Device>
+struct NumberNodes {
+  CellLanes<Dim, Real, Device> lanes;
+
   KOKKOS_FUNCTION void operator()(int, int& nodes) const {
     constexpr int width = Lanes<Real>::width, corner_rows = LaneGroup<Dim>::corner_rows;
-    const int per_row = lanes.groups_per_row(), rows = lanes.row_count();
-    int group = 0, slot = 0;
-    for (int row = 0; row < rows; ++row) {
-      if (row % lanes.rows_per_layer() == 0) lanes.layer_first(row / lanes.rows_per_layer()) = group;
-      for (int x = 0; x < per_row; ++x) {
-        const int place = row * per_row + x, most = group_slots(count, place, width);
-        lanes.group_at(place) = most > 0 ? group : -1;
-        if (most == 0) continue;
-        auto& g = lanes.groups(group++);
-        g = {};
-        g.first = slot;
-        g.slots = most;
-        g.capacity = most + slack;
-        g.x = x;
-        g.row = row;
-        slot += g.capacity;
-        for (int c = 0; c < corner_rows; ++c) {
-          const int chunk = lanes.node_row(row, c) * (per_row + 1) + x;
-          lanes.chunk_at(chunk) = lanes.chunk_at(chunk + 1) = 0;
-        }
+    const int per_row = lanes.groups_per_row();
+    int layer = 0;
+    for (int g = 0; g < lanes.group_count; ++g) {
+      const auto& of = lanes.groups(g);
+      while (layer <= of.row / lanes.rows_per_layer()) lanes.layer_first(layer++) = g;
+      lanes.group_at(of.row * per_row + of.x) = g;
+      for (int c = 0; c < corner_rows; ++c) {
+        const int chunk = lanes.node_row(of.row, c) * (per_row + 1) + of.x;
+        lanes.chunk_at(chunk) = lanes.chunk_at(chunk + 1) = 0;
       }
     }
-    lanes.layer_first(lanes.layers()) = group;
+    while (layer <= lanes.layers()) lanes.layer_first(layer++) = lanes.group_count;
     int chunk = 0;
-    const int chunks_per_plane = lanes.node_rows_per_plane() * (per_row + 1);
-    for (int n = 0; n < static_cast<int>(lanes.chunk_at.extent(0)); ++n) {
+    const int chunks = static_cast<int>(lanes.chunk_at.extent(0)),
+              chunks_per_plane = lanes.node_rows_per_plane() * (per_row + 1);
+    for (int n = 0; n < chunks; ++n) {
       if (n % chunks_per_plane == 0) lanes.plane_first(n / chunks_per_plane) = chunk * width;
       if (lanes.chunk_at(n) >= 0) lanes.chunk_at(n) = chunk++;
     }
-    lanes.plane_first(static_cast<int>(lanes.chunk_at.extent(0)) / chunks_per_plane) = chunk * width;
-    for (int g = 0; g < group; ++g)
+    lanes.plane_first(chunks / chunks_per_plane) = chunk * width;
+    for (int g = 0; g < lanes.group_count; ++g)
       for (int c = 0; c < corner_rows; ++c) {
         auto& of = lanes.groups(g);
         of.node[c] = lanes.chunk_at(lanes.node_row(of.row, c) * (per_row + 1) + of.x) * width;
@@ -246,44 +260,33 @@ struct LaneMemory {
 
 namespace detail {
 
+/// Columns and numbers for `slots` slots.
 template <int Dim, class Real, class Device>
-auto allocate_columns(int slots, int columns) {
-  using Lanes_ = CellLanes<Dim, Real, Device>;
-  return typename Lanes_::Columns(Kokkos::view_alloc("vsb::cell_lanes", Kokkos::WithoutInitializing),
-                                  static_cast<size_t>(padded_rows<Real>(slots * Lanes_::width)),
-                                  static_cast<size_t>(columns));
+void allocate_particle_columns(CellLanes<Dim, Real, Device>& lanes, int slots) {
+  const auto entries = static_cast<size_t>(padded_rows<Real>(slots * lanes.width));
+  lanes.data =
+      decltype(lanes.data)(Kokkos::view_alloc("vsb::cell_lanes", Kokkos::WithoutInitializing), entries,
+                           static_cast<size_t>(lanes.columns()));
+  lanes.id = decltype(lanes.id)(Kokkos::view_alloc("vsb::lane_ids", Kokkos::WithoutInitializing), entries);
 }
 
-/// Groups, nodes and lists for a box and the number of particles in each of its cells; the columns and
-/// numbers of the particles are left to the caller.
+/// The nodes of lanes whose box and groups are known.
 template <class Exec, int Dim, class Real, class Device>
-void number_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const CellBox<Dim>& box,
-                  const typename CellLanes<Dim, Real, Device>::Ints& count) {
-  using Cells = CellLanes<Dim, Real, Device>;
-  using Ints = typename Cells::Ints;
-  const Kokkos::RangePolicy<Exec> once(exec, 0, 1);
+void number_nodes(const Exec& exec, LaneMemory<Dim, Real, Device>& m) {
+  using Ints = typename CellLanes<Dim, Real, Device>::Ints;
   auto& lanes = m.lanes;
-  lanes.box = box;
-  const int per_row = lanes.groups_per_row(), places = lanes.row_count() * per_row, layers = lanes.layers(),
-            planes = Dim == 1 ? 1 : layers + 1, chunks = planes * lanes.node_rows_per_plane() * (per_row + 1);
-  struct {
-    int groups, slots;
-  } total{};
-  Kokkos::parallel_reduce("vsb::count_groups", Kokkos::RangePolicy<Exec>(exec, 0, places),
-                          kernel::CountGroups<Dim, Real, Device>{count, m.slack}, total.groups, total.slots);
-  exec.fence();
+  const int per_row = lanes.groups_per_row(), layers = lanes.layers(), planes = Dim == 1 ? 1 : layers + 1,
+            chunks = planes * lanes.node_rows_per_plane() * (per_row + 1);
   const auto ints = [](const std::string& name, int n) { return Ints(name, static_cast<size_t>(n)); };
-  lanes.group_count = total.groups;
-  lanes.slot_count = total.slots;
-  lanes.groups = decltype(lanes.groups)("vsb::lane_groups", static_cast<size_t>(total.groups));
   lanes.layer_first = ints("vsb::layer_first", layers + 1);
   lanes.plane_first = ints("vsb::plane_first", layers + 2);
-  lanes.group_at = ints("vsb::group_at", places);
+  lanes.group_at = ints("vsb::group_at", lanes.row_count() * per_row);
   lanes.chunk_at = ints("vsb::chunk_at", chunks);
+  Kokkos::deep_copy(exec, lanes.group_at, -1);
   Kokkos::deep_copy(exec, lanes.chunk_at, -1);
   int node_count = 0;
-  Kokkos::parallel_reduce("vsb::number_groups", once,
-                          kernel::NumberGroups<Dim, Real, Device>{lanes, count, m.slack}, node_count);
+  Kokkos::parallel_reduce("vsb::number_nodes", Kokkos::RangePolicy<Exec>(exec, 0, 1),
+                          kernel::NumberNodes<Dim, Real, Device>{lanes}, node_count);
   exec.fence();
   lanes.node_count = node_count;
   if (static_cast<int>(m.nodes.data.extent(0)) < node_count) {
@@ -297,6 +300,26 @@ void number_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const Cell
   }
   Kokkos::parallel_for("vsb::fix_lane_nodes", Kokkos::RangePolicy<Exec>(exec, 0, chunks),
                        kernel::FixLaneNodes<Dim, Real, Device>{lanes, m.nodes, m.grid.cells, m.walls});
+}
+
+/// Groups and nodes for a box and the number of particles in each of its cells; the columns and numbers of
+/// the particles are left to the caller.
+template <class Exec, int Dim, class Real, class Device>
+void number_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const CellBox<Dim>& box,
+                  const typename CellLanes<Dim, Real, Device>::Ints& count) {
+  auto& lanes = m.lanes;
+  lanes.box = box;
+  int groups = 0, slots = 0;
+  const Kokkos::RangePolicy<Exec> over_places(exec, 0, lanes.row_count() * lanes.groups_per_row());
+  Kokkos::parallel_reduce("vsb::count_groups", over_places,
+                          kernel::CountGroups<Dim, Real, Device>{count, m.slack}, groups, slots);
+  exec.fence();
+  lanes.group_count = groups;
+  lanes.slot_count = slots;
+  lanes.groups = decltype(lanes.groups)("vsb::lane_groups", static_cast<size_t>(groups));
+  Kokkos::parallel_for("vsb::place_groups", Kokkos::RangePolicy<Exec>(exec, 0, 1),
+                       kernel::PlaceGroups<Dim, Real, Device>{lanes, count, m.slack});
+  number_nodes(exec, m);
 }
 
 /// Lists with room for all particles of their layers; memory that nobody writes to is not taken.
@@ -321,6 +344,49 @@ void allocate_leavers(const Exec& exec, LaneMemory<Dim, Real, Device>& m) {
 }
 
 }  // namespace detail
+
+/// What a group has that does not follow from the rest.
+struct GroupShape {
+  int x, row, slots, capacity;
+};
+
+/// Lays lanes out as others were; columns and numbers of the particles are left to the caller. False where
+/// that makes no sense, and then nothing is changed.
+template <class Exec, int Dim, class Real, class Device>
+bool lay_out_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const CellBox<Dim>& box,
+                   const std::vector<GroupShape>& shape) {
+  auto lanes = m.lanes;
+  lanes.box = box;
+  for (int i = 0; i < Dim; ++i)
+    if (box.cells[i] < 1 || box.cells[i] > m.grid.cells[i] + 8 * lanes.width) return false;
+  lanes.groups = decltype(lanes.groups)("vsb::lane_groups", shape.size());
+  lanes.group_count = static_cast<int>(shape.size());
+  lanes.slot_count = 0;
+  const auto groups = Kokkos::create_mirror_view(lanes.groups);
+  int last = -1;
+  for (size_t g = 0; g < shape.size(); ++g) {
+    const auto& of = shape[g];
+    if (of.x < 0 || of.x >= lanes.groups_per_row() || of.row < 0 || of.row >= lanes.row_count()) return false;
+    const int place = of.row * lanes.groups_per_row() + of.x;
+    if (place <= last || of.slots < 0 || of.capacity < of.slots || of.capacity > m.lanes.particle_count + 64)
+      return false;
+    last = place;
+    groups(g) = {};
+    groups(g).first = lanes.slot_count;
+    groups(g).slots = of.slots;
+    groups(g).capacity = of.capacity;
+    groups(g).x = of.x;
+    groups(g).row = of.row;
+    lanes.slot_count += of.capacity;
+  }
+  Kokkos::deep_copy(lanes.groups, groups);
+  m.lanes = lanes;
+  detail::number_nodes(exec, m);
+  detail::allocate_particle_columns(m.lanes, m.lanes.slot_count);
+  detail::allocate_leavers(exec, m);
+  exec.fence();
+  return true;
+}
 
 /// Packs particles that all lie in the grid. Returns -1, or the lowest number of one that does not.
 template <class Exec, int Dim, class Real, class Device>
@@ -352,10 +418,7 @@ int pack_particles(const Exec& exec, const Particles<Dim, Real, Device>& particl
   detail::number_lanes(exec, m, basis.box, count);
   auto& lanes = m.lanes;
   lanes.particle_count = n;
-  const int columns = lanes.columns();
-  lanes.data = detail::allocate_columns<Dim, Real, Device>(lanes.slot_count, columns);
-  lanes.id = typename Cells::Ints(Kokkos::view_alloc("vsb::lane_ids", Kokkos::WithoutInitializing),
-                                  lanes.data.extent(0));
+  detail::allocate_particle_columns(lanes, lanes.slot_count);
   Kokkos::parallel_for("vsb::pack_particles", Kokkos::RangePolicy<Exec>(exec, 0, lanes.group_count),
                        kernel::PackGroup<Dim, Real, Device>{lanes, particles, bins, m.grid});
   detail::allocate_leavers(exec, m);

@@ -61,6 +61,9 @@ void sum_lanes(const Exec& exec, const LaneState<Dim, Real, Device>& s, const Fi
   });
 }
 
+}  // namespace detail
+
+/// Marks the boundary of lanes that were packed anew.
 template <class Exec, int Dim, class Real, class Device>
 void mark_packed_lanes(const Exec& exec, LaneState<Dim, Real, Device>& s) {
   fit_boundary(exec, s.memory.lanes, s.boundary);
@@ -68,15 +71,13 @@ void mark_packed_lanes(const Exec& exec, LaneState<Dim, Real, Device>& s) {
   mark_lanes(exec, s.memory.lanes, s.memory.grid.cells, s.boundary, true);
 }
 
-}  // namespace detail
-
 /// Packs the particles; s.memory.grid and walls and what s.boundary declares must be set. Returns -1, or the
 /// lowest number of a particle outside the grid.
 template <class Exec, int Dim, class Real, class Device>
 int pack_lanes(const Exec& exec, const Particles<Dim, Real, Device>& particles,
                LaneState<Dim, Real, Device>& s) {
   const int lost = pack_particles(exec, particles, s.memory);
-  if (lost < 0) detail::mark_packed_lanes(exec, s);
+  if (lost < 0) mark_packed_lanes(exec, s);
   return lost;
 }
 
@@ -117,7 +118,7 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
     const int lost = repack_lanes(exec, m);
     if (lost >= 0) return lost;
     ++s.repacked;
-    detail::mark_packed_lanes(exec, s);
+    mark_packed_lanes(exec, s);
     detail::sum_lanes(exec, s, next_virtual_stress);
   } else if (update_occupied(exec, m.lanes, s.boundary)) {
     if constexpr (Field::loaded) {

@@ -99,6 +99,30 @@ struct TakeInLeavers {
   }
 };
 
+/// One list: the particles without a place, as far as a report of a lost one needs them.
+template <int Dim, class Real, class Device>
+struct UnpackHomeless {
+  Leavers<Dim, Real, Device> leavers;
+  Particles<Dim, Real, Device> particles;
+  UniformGrid<Dim, Real> grid;
+  KOKKOS_FUNCTION void operator()(int k) const {
+    for (int n = leavers.first(k); n < leavers.first(k) + leavers.count(k); ++n) {
+      const auto& head = leavers.head(n);
+      if (!head.homeless) continue;
+      Vector<Dim, Real> xi;
+      for (int i = 0; i < Dim; ++i) xi[i] = leavers.data(n, i);
+      const auto x = grid.map(head.cell, xi).x;
+      for (int i = 0; i < Dim; ++i) {
+        particles.position(head.id, i) = x[i];
+        particles.velocity(head.id, i) = leavers.data(n, Dim + i);
+      }
+      particles.volume(head.id) = leavers.data(n, 2 * Dim + 1);
+      for (int c = 0; c < particles.stress_size; ++c)
+        particles.cauchy_stress(head.id, c) = leavers.data(n, 2 * Dim + 2 + c);
+    }
+  }
+};
+
 template <class Device>
 struct AddUp {
   Kokkos::View<int*, Device> count;
@@ -279,6 +303,14 @@ int take_in_leavers(const Exec& exec, const LaneMemory<Dim, Real, Device>& m, co
   return homeless;
 }
 
+/// Writes back the leavers without a place, which unpack_particles does not know.
+template <class Exec, int Dim, class Real, class Device>
+void unpack_homeless(const Exec& exec, const LaneMemory<Dim, Real, Device>& m,
+                     const Particles<Dim, Real, Device>& particles) {
+  Kokkos::parallel_for("vsb::unpack_homeless", Kokkos::RangePolicy<Exec>(exec, 0, m.lanes.layers()),
+                       kernel::UnpackHomeless<Dim, Real, Device>{m.leavers, particles, m.grid});
+}
+
 /// Packs all particles anew, the leavers without a place among them. Returns -1, or the lowest number of a
 /// particle outside the grid, and then nothing is packed.
 template <class Exec, int Dim, class Real, class Device>
@@ -317,9 +349,12 @@ int repack_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m) {
   Kokkos::parallel_for("vsb::find_sources", over_groups, place.find);
   Kokkos::parallel_for("vsb::place_homeless", once, place);
   const bool fits = static_cast<int>(before.data.extent(0)) >= entries;
-  lanes.data = fits ? before.data
-                    : detail::allocate_columns<Dim, Real, Device>(lanes.slot_count + lanes.slot_count / 16,
-                                                                  lanes.columns());
+  if (fits) {
+    lanes.data = before.data;
+    lanes.id = Ints(Kokkos::view_alloc("vsb::lane_ids", Kokkos::WithoutInitializing), before.data.extent(0));
+  } else {
+    detail::allocate_particle_columns(lanes, lanes.slot_count + lanes.slot_count / 16);
+  }
   const Kokkos::RangePolicy<Exec> over_entries(exec, 0, entries);
   const auto entries_before = static_cast<size_t>(before.slot_count * before.width);
   const Kokkos::View<Real*, Device> copy(
@@ -329,7 +364,6 @@ int repack_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m) {
     Kokkos::parallel_for("vsb::take_column", over_entries,
                          kernel::TakeColumn<Dim, Real, Device>{copy, lanes, m.leavers, source, c});
   }
-  lanes.id = Ints(Kokkos::view_alloc("vsb::lane_ids", Kokkos::WithoutInitializing), lanes.data.extent(0));
   Kokkos::parallel_for("vsb::take_ids", over_entries,
                        kernel::TakeIds<Dim, Real, Device>{before.id, lanes.id, m.leavers, source});
   exec.fence();

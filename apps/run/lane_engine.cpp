@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/lane_engine.hpp"
+
+namespace vsb::app {
+
+namespace {
+
+std::string obstacle(const Scene& scene) {
+  if (scene.grid.mapped()) return "its grid is mapped";
+  if (scene.method.basis != BasisKind::linear) return "its basis is not linear";
+  if (scene.method.scatter != "gathered")
+    return fmt::format("method.scatter = \"{}\" is a way of the particle kernels", scene.method.scatter);
+  if (scene.method.fill_criterion > 0) return "method.fill_criterion is on";
+  if (scene.method.void_filter) return "method.void_filter is on";
+  for (const auto& traction : scene.tractions) {
+    if (traction.imposition != Imposition::virtual_stress)
+      return fmt::format("traction '{}' is not imposed by the (modified) virtual stress", traction.name);
+    if (traction.self_balanced) return fmt::format("traction '{}' is self-balanced", traction.name);
+  }
+  for (const auto& body : scene.bodies) {
+    const auto &a = scene.bodies.front().material, &b = body.material;
+    if (a.law != b.law || a.youngs_modulus != b.youngs_modulus || a.poisson_ratio != b.poisson_ratio)
+      return "its bodies differ in their material";
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string reason_for_particle_kernels(const Scene& scene) {
+  if (scene.method.engine == "particles") return "method.engine asks for them";
+  const auto reason = obstacle(scene);
+  if (scene.method.engine == "cell_lanes" && !reason.empty())
+    throw SetupError(fmt::format("method.engine = \"cell_lanes\" is not for this scene: {}", reason));
+  return reason;
+}
+
+}  // namespace vsb::app

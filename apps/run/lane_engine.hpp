@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Steps of a scene on cell lanes (kernels/lane_step.hpp), the fast way; and which scenes can go it.
+#pragma once
+
+#include <memory>
+
+#include <vsb/kernels/lane_step.hpp>
+#include "run/loads.hpp"
+
+namespace vsb::app {
+
+/// Why a scene takes the particle kernels; empty where it takes the cell lanes. Throws SetupError where it
+/// asks for the cell lanes and cannot have them.
+std::string reason_for_particle_kernels(const Scene& scene);
+
+template <int Dim, class Real>
+class LaneEngine {
+ public:
+  using Device = ExecutionSpace::device_type;
+
+  struct Setup {
+    UniformGrid<Dim, Real> grid;
+    Walls<Dim> walls;
+    BoundaryNodes<Device> tractions;  ///< [node of the grid]: declared
+    TractionMask conservative;
+    Material<Real> material;
+    int state_size;  ///< of the material
+    StepOptions<Dim, Real> options;
+  };
+  /// Packs the particles, which must lie in the grid.
+  LaneEngine(const Setup& setup, const Particles<Dim, Real, Device>& particles);
+
+  /// Makes ready for a first step under these loads.
+  void prepare(const Loads<Dim, Real>& loads);
+  bool prepared() const { return prepared_; }
+  /// Advances, and makes ready for another step, under the loads of that one. Returns -1, or the number of a
+  /// particle that left the grid.
+  int step(const Loads<Dim, Real>& next);
+  /// Writes the particles back.
+  void unpack(const Particles<Dim, Real, Device>& particles) const;
+  int boundary_nodes() const;
+  size_t bytes() const;
+
+  /// The state bit by bit, and back; false where it is not one of this scene's.
+  std::vector<unsigned char> save() const;
+  bool restore(const std::vector<unsigned char>& saved);
+
+ private:
+  Setup setup_;
+  ExecutionSpace exec_;
+  LaneState<Dim, Real, Device> state_;
+  bool prepared_ = false;
+};
+
+}  // namespace vsb::app

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// The members of LaneEngine, compiled for each dimension and precision on its own.
+#pragma once
+
+#include <cstring>
+
+#include "run/lane_engine.hpp"
+
+namespace vsb::app {
+
+namespace detail {
+
+/// Calls work(field) with the field of the loads; all that have nothing to add to particles are the same.
+template <int Dim, class Real, class Work>
+void with_lane_field(const Loads<Dim, Real>& loads, const UniformGrid<Dim, Real>& grid, const Work& work) {
+  loads.template with_field<false>(grid, CellBits<typename LaneEngine<Dim, Real>::Device>{},
+                                   [&](const auto& field) {
+                                     if constexpr (std::decay_t<decltype(field)>::loaded)
+                                       work(field);
+                                     else
+                                       work(NoVirtualStress{});
+                                     return 0;
+                                   });
+}
+
+/// Bytes behind a row of fields, each with its length.
+class Writer {
+ public:
+  template <class T>
+  void number(const T& x) {
+    bytes(&x, sizeof x);
+  }
+  template <class T>
+  void array(const T* first, size_t count) {
+    number(count);
+    bytes(first, count * sizeof(T));
+  }
+  std::vector<unsigned char> result;
+
+ private:
+  void bytes(const void* from, size_t n) {
+    const auto* b = static_cast<const unsigned char*>(from);
+    result.insert(result.end(), b, b + n);
+  }
+};
+
+class Reader {
+ public:
+  explicit Reader(const std::vector<unsigned char>& from) : from_(from) {}
+  template <class T>
+  bool number(T& x) {
+    return bytes(&x, sizeof x);
+  }
+  /// An array of exactly `count` values.
+  template <class T>
+  bool array(T* first, size_t count) {
+    size_t found = 0;
+    return number(found) && found == count && bytes(first, count * sizeof(T));
+  }
+  bool at_end() const { return at_ == from_.size(); }
+
+ private:
+  bool bytes(void* to, size_t n) {
+    if (from_.size() - at_ < n) return false;
+    std::memcpy(to, from_.data() + at_, n);
+    at_ += n;
+    return true;
+  }
+  const std::vector<unsigned char>& from_;
+  size_t at_ = 0;
+};
+
+template <class View>
+auto on_host(const View& view) {
+  return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), view);
+}
+
+}  // namespace detail
+
+template <int Dim, class Real>
+LaneEngine<Dim, Real>::LaneEngine(const Setup& setup, const Particles<Dim, Real, Device>& particles)
+    : setup_(setup) {
+  state_.memory.grid = setup.grid;
+  state_.memory.walls = setup.walls;
+  state_.memory.lanes.state_size = setup.state_size;
+  state_.boundary.declared = setup.tractions;
+  state_.boundary.conservative = setup.conservative;
+  pack_lanes(exec_, particles, state_);
+}
+
+template <int Dim, class Real>
+void LaneEngine<Dim, Real>::prepare(const Loads<Dim, Real>& loads) {
+  detail::with_lane_field(loads, setup_.grid,
+                          [&](const auto& field) { prepare_lane_step(exec_, state_, field); });
+  prepared_ = true;
+}
+
+template <int Dim, class Real>
+int LaneEngine<Dim, Real>::step(const Loads<Dim, Real>& next) {
+  int lost = -1;
+  detail::with_lane_field(next, setup_.grid, [&](const auto& field) {
+    std::visit(
+        [&](const auto& material, const auto& volume) {
+          lost = lane_step(exec_, state_, material, volume, field, setup_.options);
+        },
+        setup_.material, setup_.options.volume_update);
+  });
+  return lost;
+}
+
+template <int Dim, class Real>
+void LaneEngine<Dim, Real>::unpack(const Particles<Dim, Real, Device>& particles) const {
+  unpack_particles(exec_, state_.memory, particles);
+  unpack_homeless(exec_, state_.memory, particles);
+  exec_.fence();
+}
+
+template <int Dim, class Real>
+int LaneEngine<Dim, Real>::boundary_nodes() const {
+  return count_loaded_nodes(exec_, state_.memory.lanes, state_.boundary);
+}
+
+template <int Dim, class Real>
+size_t LaneEngine<Dim, Real>::bytes() const {
+  const auto bytes = [](const auto&... views) { return (... + (views.span() * sizeof(*views.data()))); };
+  const auto& l = state_.memory.lanes;
+  const auto& n = state_.memory.nodes;
+  const auto& b = state_.boundary;
+  return bytes(l.data, l.id, l.groups, l.layer_first, l.plane_first, l.group_at, l.chunk_at, n.data, n.fixed,
+               b.bits.occupied, b.bits.exterior, b.bits.boundary, b.marked, b.active, b.tractions);
+}
+
+template <int Dim, class Real>
+std::vector<unsigned char> LaneEngine<Dim, Real>::save() const {
+  const auto& m = state_.memory;
+  const auto& l = m.lanes;
+  const size_t entries = static_cast<size_t>(l.slot_count) * l.width,
+               nodes = static_cast<size_t>(l.node_count);
+  detail::Writer w;
+  w.number(l.width);
+  w.number(l.box);
+  w.number(l.group_count);
+  w.number(l.slot_count);
+  w.number(l.node_count);
+  w.number(m.slack);
+  w.number(prepared_);
+  const auto groups = detail::on_host(l.groups);
+  std::vector<GroupShape> shape;
+  for (int g = 0; g < l.group_count; ++g) {
+    const auto& group = groups(static_cast<size_t>(g));
+    shape.push_back({group.x, group.row, group.slots, group.capacity});
+  }
+  w.array(shape.data(), shape.size());
+  w.array(detail::on_host(l.id).data(), entries);
+  const auto data = detail::on_host(l.data);
+  for (int c = 0; c < l.columns(); ++c) w.array(&data(0, static_cast<size_t>(c)), entries);
+  const auto sums = detail::on_host(m.nodes.data);
+  for (int c = 0; c < 2 * m.nodes.sum_columns; ++c) w.array(&sums(0, static_cast<size_t>(c)), nodes);
+  return std::move(w.result);
+}
+
+template <int Dim, class Real>
+bool LaneEngine<Dim, Real>::restore(const std::vector<unsigned char>& saved) {
+  detail::Reader r(saved);
+  auto& m = state_.memory;
+  int width = 0, groups = 0, slots = 0, nodes = 0, slack = 0;
+  CellBox<Dim> box;
+  bool prepared = false;
+  if (!r.number(width) || width != m.lanes.width || !r.number(box) || !r.number(groups) || !r.number(slots) ||
+      !r.number(nodes) || !r.number(slack) || !r.number(prepared) || groups < 0 || slots < 0 || nodes < 0)
+    return false;
+  if (static_cast<size_t>(groups) > saved.size()) return false;
+  std::vector<GroupShape> shape(static_cast<size_t>(groups));
+  if (!r.array(shape.data(), shape.size())) return false;
+  if (!lay_out_lanes(exec_, m, box, shape)) return false;
+  if (m.lanes.slot_count != slots || m.lanes.node_count != nodes) return false;
+  m.slack = slack;
+  auto& l = m.lanes;
+  const size_t entries = static_cast<size_t>(slots) * l.width;
+  const auto id = Kokkos::create_mirror_view(l.id);
+  if (!r.array(id.data(), entries)) return false;
+  std::vector<bool> seen(static_cast<size_t>(l.particle_count));
+  for (size_t e = 0; e < entries; ++e) {
+    if (id(e) < 0) continue;
+    if (id(e) >= l.particle_count || seen[static_cast<size_t>(id(e))]) return false;
+    seen[static_cast<size_t>(id(e))] = true;
+  }
+  for (const bool found : seen)
+    if (!found) return false;
+  Kokkos::deep_copy(l.id, id);
+  const auto data = Kokkos::create_mirror_view(l.data);
+  for (int c = 0; c < l.columns(); ++c)
+    if (!r.array(&data(0, static_cast<size_t>(c)), entries)) return false;
+  Kokkos::deep_copy(l.data, data);
+  const auto sums = Kokkos::create_mirror_view(m.nodes.data);
+  for (int c = 0; c < 2 * m.nodes.sum_columns; ++c)
+    if (!r.array(&sums(0, static_cast<size_t>(c)), static_cast<size_t>(nodes))) return false;
+  Kokkos::deep_copy(m.nodes.data, sums);
+  if (!r.at_end()) return false;
+  mark_packed_lanes(exec_, state_);
+  prepared_ = prepared;
+  return true;
+}
+
+}  // namespace vsb::app
