@@ -9,17 +9,10 @@
 #include <vsb/physics/mapped_basis.hpp>
 #include <vsb/physics/quadratic_bspline_basis.hpp>
 #include <vsb/physics/uniform_gimp_basis.hpp>
+#include "run/execution_space.hpp"
 #include "scene/scene.hpp"
 
 namespace vsb::app {
-
-#if defined(VSB_BACKEND_CUDA)
-using ExecutionSpace = Kokkos::Cuda;
-#elif defined(VSB_BACKEND_OPENMP)
-using ExecutionSpace = Kokkos::OpenMP;
-#else
-using ExecutionSpace = Kokkos::Serial;
-#endif
 
 /// A basis together with what it points to, in the memory of the backend or of another device.
 template <class Basis, class Device = ExecutionSpace::device_type>

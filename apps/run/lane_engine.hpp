@@ -6,6 +6,7 @@
 #include <memory>
 
 #include <vsb/kernels/lane_step.hpp>
+#include "run/execution_space.hpp"
 #include "run/loads.hpp"
 
 namespace vsb::app {

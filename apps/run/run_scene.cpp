@@ -189,6 +189,8 @@ void check_scene(const Scene& scene) {
   print_advice(scene, *simulation);
   fmt::print("# {} particles, {} boundary nodes, {:.3g} MB of state\n", simulation->particle_count(),
              simulation->boundary_nodes(), static_cast<double>(simulation->state_bytes()) / 1e6);
+  const auto reason = simulation->particle_kernels_because();
+  fmt::print("# steps on {}\n", reason.empty() ? "cell lanes" : "particle kernels: " + reason);
   print_cut_volume(simulation->cut_volume(), "# ");
   print_moment_fit(scene, simulation->moment_fit(), "# ");
   const double settled = loads_settled_at(scene);

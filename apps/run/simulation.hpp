@@ -48,7 +48,8 @@ struct Snapshot {
   size_t count() const { return id.size(); }
 };
 
-/// The nodes at one moment, as of the last step made; nodes along x first.
+/// The nodes at one moment, under the loads of that moment, and their velocity after another step; nodes
+/// along x first.
 struct GridSnapshot {
   std::vector<double> mass, velocity, force;
   std::vector<unsigned char> boundary;  ///< 1 where a traction acts
@@ -96,6 +97,8 @@ class Simulation {
   virtual VoidFilterReport void_filter() const = 0;
   /// What looks wrong about the virtual stress fields, a sentence each; see run/field_advice.hpp.
   virtual std::vector<std::string> advice() const = 0;
+  /// Why the scene is not run on cell lanes; empty where it is (run/lane_engine.hpp).
+  virtual std::string particle_kernels_because() const = 0;
   /// Memory of particles, nodes and occupancy.
   virtual size_t state_bytes() const = 0;
 
@@ -111,7 +114,7 @@ class Simulation {
   virtual BalanceReport balance() = 0;
   virtual BalanceReport balance_under_loads_at(double t) = 0;
   virtual Snapshot snapshot() = 0;
-  virtual GridSnapshot grid_snapshot() const = 0;
+  virtual GridSnapshot grid_snapshot() = 0;
   virtual SavedState save() const = 0;
   /// Throws SetupError where the saved state does not fit this scene.
   virtual void restore(const SavedState& saved) = 0;

@@ -15,6 +15,7 @@
 #include "run/basis_of.hpp"
 #include "run/field_advice.hpp"
 #include "run/grid_lines.hpp"
+#include "run/lane_engine.hpp"
 #include "run/loads.hpp"
 #include "run/material_of.hpp"
 #include "run/simulation.hpp"
@@ -54,11 +55,19 @@ class SimulationOf final : public Simulation {
                                                               : Scatter::gathered;
     locate();
     check_tractions();
+    particle_kernels_because_ = reason_for_particle_kernels(scene);
+    if constexpr (has_lanes)
+      if (particle_kernels_because_.empty()) pack();
   }
 
   int particle_count() const override { return state_.particles.count(); }
   long long step() const override { return step_; }
-  int boundary_nodes() const override { return state_.occupancy.boundary_node_count; }
+  int boundary_nodes() const override {
+    if constexpr (has_lanes)
+      if (lanes_) return lanes_->boundary_nodes();
+    return state_.occupancy.boundary_node_count;
+  }
+  std::string particle_kernels_because() const override { return particle_kernels_because_; }
 
   CutVolume cut_volume() const override { return placed_.cut; }
   MomentFit moment_fit() const override { return placed_.moment_fit; }
@@ -80,10 +89,12 @@ class SimulationOf final : public Simulation {
                  o.bins.occupied, o.cells.occupied, o.cells.exterior, o.cells.boundary, o.cells.underfilled,
                  o.cells.outside, o.tractions, o.boundary, state_.sums_workspace.particles.bin_sums,
                  state_.remap_workspace.bin_sums) +
-           owned_basis_.bytes() + placed_.position.size() * sizeof(placed_.position[0]);
+           lane_bytes() + owned_basis_.bytes() + placed_.position.size() * sizeof(placed_.position[0]);
   }
 
   void advance(long long steps) override {
+    if constexpr (has_lanes)
+      if (lanes_) return advance_lanes(steps);
     for (long long n = 0; n < steps; ++n) {
       set_loads(static_cast<double>(step_ + 1) * scene_.time.dt);
       const int lost = with_field(
@@ -128,10 +139,13 @@ class SimulationOf final : public Simulation {
     solution.balance = balance_under_loads_at(t);
     displace_particles(exec_, state_.particles, basis_, u);
     exec_.fence();
+    if constexpr (has_lanes)
+      if (lanes_) pack();
     return solution;
   }
 
   void check_health() const override {
+    unpack();
     const auto bad = find_invalid(exec_, state_.particles);
     if (bad.particle < 0) return;
     static const char* names[] = {"position", "velocity", "cauchy_stress", "volume"};
@@ -144,6 +158,7 @@ class SimulationOf final : public Simulation {
 
   BalanceReport balance() override { return balance_under_loads_at(time()); }
   BalanceReport balance_under_loads_at(double t) override {
+    unpack();
     set_loads(t);
     locate();
     const auto b = with_field(
@@ -164,6 +179,7 @@ class SimulationOf final : public Simulation {
   }
 
   Snapshot snapshot() override {
+    unpack();
     const auto host_block = host_copy(block_);
     const auto& p = host_block.particles;
     const auto n = static_cast<size_t>(p.count());
@@ -198,7 +214,11 @@ class SimulationOf final : public Simulation {
     return s;
   }
 
-  GridSnapshot grid_snapshot() const override {
+  GridSnapshot grid_snapshot() override {
+    // The nodes of the state as it is, however the steps before it were made.
+    balance();
+    update_nodes(exec_, state_.nodes, basis_, options_.damping, options_.dt);
+    exec_.fence();
     const auto sums =
         Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.nodes.sums, "vsb::sums on host");
     const auto velocity = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.nodes.velocity,
@@ -225,6 +245,8 @@ class SimulationOf final : public Simulation {
   }
 
   SavedState save() const override {
+    if constexpr (has_lanes)
+      if (lanes_) return {step_, sizeof(Real), lanes_->save()};
     const auto host = host_copy(block_);
     SavedState saved{step_, sizeof(Real), std::vector<unsigned char>(saved_bytes())};
     unsigned char* to = saved.particles.data();
@@ -246,6 +268,8 @@ class SimulationOf final : public Simulation {
   }
 
   void restore(const SavedState& saved) override {
+    if constexpr (has_lanes)
+      if (lanes_) return restore_lanes(saved);
     if (saved.bytes_per_number != sizeof(Real) || saved.particles.size() != saved_bytes())
       throw SetupError("the checkpoint belongs to another scene: its particles do not fit this one's");
     const auto host = host_copy(block_);
@@ -292,6 +316,58 @@ class SimulationOf final : public Simulation {
             state_.surface.position.span() + state_.surface.area.span()) *
                sizeof(Real) +
            state_.occupancy.cells.outside.span() * sizeof(std::uint64_t);
+  }
+
+  static constexpr bool has_lanes = std::is_same_v<Basis, LinearBasis<Dim, Real>>;
+
+  /// Packs the particles into cell lanes.
+  void pack() {
+    typename LaneEngine<Dim, Real>::Setup setup;
+    setup.grid = basis_.grid;
+    for (int i = 0; i < Dim; ++i)
+      for (int side = 0; side < 2; ++side)
+        setup.walls.fixed[i][side] = scene_.faces.fixed[static_cast<size_t>(i)][static_cast<size_t>(side)];
+    setup.tractions = state_.occupancy.tractions;
+    setup.conservative = state_.occupancy.conservative;
+    setup.material = bodies_.front().material;
+    setup.state_size = state_size<Dim>(setup.material);
+    setup.options = options_;
+    lanes_ = std::make_unique<LaneEngine<Dim, Real>>(setup, state_.particles);
+    packed_ = false;
+  }
+  /// Brings the particles back from the lanes, where they moved there.
+  void unpack() const {
+    if constexpr (has_lanes) {
+      if (lanes_ && packed_) lanes_->unpack(state_.particles);
+      packed_ = false;
+    }
+  }
+  void advance_lanes(long long steps) {
+    if (!lanes_->prepared()) {
+      set_loads(static_cast<double>(step_ + 1) * scene_.time.dt);
+      lanes_->prepare(loads_);
+    }
+    for (long long n = 0; n < steps; ++n) {
+      set_loads(static_cast<double>(step_ + 2) * scene_.time.dt);
+      packed_ = true;
+      const int lost = lanes_->step(loads_);
+      ++step_;
+      if (lost >= 0) throw_lost(lost);
+    }
+    exec_.fence();
+  }
+  void restore_lanes(const SavedState& saved) {
+    if (saved.bytes_per_number != sizeof(Real) || !lanes_->restore(saved.particles))
+      throw SetupError("the checkpoint belongs to another scene: its particles do not fit this one's");
+    step_ = saved.step;
+    packed_ = true;
+    unpack();
+    locate();
+  }
+  size_t lane_bytes() const {
+    if constexpr (has_lanes)
+      if (lanes_) return lanes_->bytes();
+    return 0;
   }
 
   using Device = ExecutionSpace::device_type;
@@ -565,6 +641,9 @@ class SimulationOf final : public Simulation {
   std::vector<Body<Real>> bodies_;
   StepOptions<Dim, Real> options_{};
   long long step_ = 0;
+  std::string particle_kernels_because_;
+  std::unique_ptr<LaneEngine<Dim, Real>> lanes_;
+  mutable bool packed_ = false;  ///< whether the particles moved on in lanes_ alone
 };
 
 }  // namespace vsb::app

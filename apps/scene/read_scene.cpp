@@ -196,6 +196,7 @@ void read_method(TableReader r, Scene& scene) {
       r.number("damping", {0, 1, false, true}, 0.0, "Cundall's alpha; not for bodies that move as a whole");
   m.volume_update = r.choice("volume_update", {"determinant", "exponential"}, "determinant");
   m.scatter = r.choice("scatter", {"gathered", "duplicated", "atomic"}, "gathered");
+  m.engine = r.choice("engine", {"auto", "cell_lanes", "particles"}, "auto");
   m.cell_gauss_points = static_cast<int>(
       r.integer("cell_gauss_points", 1, 4, 2, "per direction, for imposition = \"virtual_stress_original\""));
   m.fill_criterion =
