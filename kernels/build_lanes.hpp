@@ -63,47 +63,71 @@ struct CellRange {
   }
 };
 
-/// Most particles of a cell in a group's lanes.
-template <class Counts>
-KOKKOS_INLINE_FUNCTION int group_slots(const Counts& count, int group, int width) {
-  int most = 0;
-  for (int l = 0; l < width; ++l) most = math::max(most, static_cast<int>(count(group * width + l)));
-  return most;
-}
+/// How many slots a group needs, and how many it gets.
+template <int Dim, class Real, class Device>
+struct GroupRoom {
+  CellLanes<Dim, Real, Device> lanes;
+  typename CellLanes<Dim, Real, Device>::Ints count;  ///< [cell of the box]: particles
+  int slack;                                          ///< slots to spare
+  int reserve;  ///< slots of a group without particles beside one that has some; 0: no such groups
+
+  /// Most particles of a cell.
+  KOKKOS_FUNCTION int needed(int place) const {
+    constexpr int width = Lanes<Real>::width;
+    int most = 0;
+    for (int l = 0; l < width; ++l) most = math::max(most, static_cast<int>(count(place * width + l)));
+    return most;
+  }
+  KOKKOS_FUNCTION int capacity(int place, int needed_here) const {
+    if (needed_here > 0) return needed_here + slack;
+    return reserve > 0 && beside_particles(place) ? reserve : 0;
+  }
+  KOKKOS_FUNCTION bool beside_particles(int place) const {
+    const int per_row = lanes.groups_per_row(), row = place / per_row, x = place % per_row,
+              j = row % lanes.rows_per_layer(), k = row / lanes.rows_per_layer();
+    for (int dk = -1; dk <= 1; ++dk)
+      for (int dj = -1; dj <= 1; ++dj)
+        for (int dx = -1; dx <= 1; ++dx) {
+          if (k + dk < 0 || k + dk >= lanes.layers() || j + dj < 0 || j + dj >= lanes.rows_per_layer() ||
+              x + dx < 0 || x + dx >= per_row)
+            continue;
+          if (needed(((k + dk) * lanes.rows_per_layer() + j + dj) * per_row + x + dx) > 0) return true;
+        }
+    return false;
+  }
+};
 
 template <int Dim, class Real, class Device>
 struct CountGroups {
-  typename CellLanes<Dim, Real, Device>::Ints count;
-  int slack;
-  KOKKOS_FUNCTION void operator()(int group, int& groups, int& slots) const {
-    const int most = group_slots(count, group, Lanes<Real>::width);
-    if (most == 0) return;
+  GroupRoom<Dim, Real, Device> room;
+  KOKKOS_FUNCTION void operator()(int place, int& groups, int& slots) const {
+    const int capacity = room.capacity(place, room.needed(place));
+    if (capacity == 0) return;
     ++groups;
-    slots += most + slack;
+    slots += capacity;
   }
 };
 
 /// Lines the groups up, one after the other; a single work item.
 template <int Dim, class Real, class Device>
 struct PlaceGroups {
-  CellLanes<Dim, Real, Device> lanes;
-  typename CellLanes<Dim, Real, Device>::Ints count;
-  int slack;
+  GroupRoom<Dim, Real, Device> room;
 
   KOKKOS_FUNCTION void operator()(int) const {
+    const auto& lanes = room.lanes;
     const int per_row = lanes.groups_per_row(), places = lanes.row_count() * per_row;
     int group = 0, slot = 0;
     for (int place = 0; place < places; ++place) {
-      const int most = group_slots(count, place, Lanes<Real>::width);
-      if (most == 0) continue;
+      const int needed = room.needed(place), capacity = room.capacity(place, needed);
+      if (capacity == 0) continue;
       auto& g = lanes.groups(group++);
       g = {};
       g.first = slot;
-      g.slots = most;
-      g.capacity = most + slack;
+      g.slots = needed;
+      g.capacity = capacity;
       g.x = place % per_row;
       g.row = place / per_row;
-      slot += g.capacity;
+      slot += capacity;
     }
   }
 };
@@ -255,7 +279,8 @@ struct LaneMemory {
   Leavers<Dim, Real, Device> leavers;
   UniformGrid<Dim, Real> grid;
   Walls<Dim> walls;
-  int slack = 1;  ///< slots that a group has to spare
+  int slack = 1;    ///< slots that a group has to spare
+  int reserve = 0;  ///< slots of groups beside the body, for particles that move there
 };
 
 namespace detail {
@@ -264,9 +289,8 @@ namespace detail {
 template <int Dim, class Real, class Device>
 void allocate_particle_columns(CellLanes<Dim, Real, Device>& lanes, int slots) {
   const auto entries = static_cast<size_t>(padded_rows<Real>(slots * lanes.width));
-  lanes.data =
-      decltype(lanes.data)(Kokkos::view_alloc("vsb::cell_lanes", Kokkos::WithoutInitializing), entries,
-                           static_cast<size_t>(lanes.columns()));
+  lanes.data = decltype(lanes.data)(Kokkos::view_alloc("vsb::cell_lanes", Kokkos::WithoutInitializing),
+                                    entries, static_cast<size_t>(lanes.columns()));
   lanes.id = decltype(lanes.id)(Kokkos::view_alloc("vsb::lane_ids", Kokkos::WithoutInitializing), entries);
 }
 
@@ -311,14 +335,15 @@ void number_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const Cell
   lanes.box = box;
   int groups = 0, slots = 0;
   const Kokkos::RangePolicy<Exec> over_places(exec, 0, lanes.row_count() * lanes.groups_per_row());
-  Kokkos::parallel_reduce("vsb::count_groups", over_places,
-                          kernel::CountGroups<Dim, Real, Device>{count, m.slack}, groups, slots);
+  const kernel::GroupRoom<Dim, Real, Device> room{lanes, count, m.slack, m.reserve};
+  Kokkos::parallel_reduce("vsb::count_groups", over_places, kernel::CountGroups<Dim, Real, Device>{room},
+                          groups, slots);
   exec.fence();
   lanes.group_count = groups;
   lanes.slot_count = slots;
   lanes.groups = decltype(lanes.groups)("vsb::lane_groups", static_cast<size_t>(groups));
   Kokkos::parallel_for("vsb::place_groups", Kokkos::RangePolicy<Exec>(exec, 0, 1),
-                       kernel::PlaceGroups<Dim, Real, Device>{lanes, count, m.slack});
+                       kernel::PlaceGroups<Dim, Real, Device>{{lanes, count, m.slack, m.reserve}});
   number_nodes(exec, m);
 }
 

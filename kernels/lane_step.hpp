@@ -19,6 +19,7 @@ struct LaneState {
   LaneMemory<Dim, Real, Device> memory;
   LaneBoundary<Dim, Device> boundary;
   long long repacked = 0;  ///< times
+  int steps_since_repacked = 1000;
 
   bool cubic() const {
     for (int i = 1; i < Dim; ++i)
@@ -81,6 +82,19 @@ int pack_lanes(const Exec& exec, const Particles<Dim, Real, Device>& particles,
   return lost;
 }
 
+/// Where particles flow, groups get slots to spare, and there are groups where the body is about to be.
+template <int Dim, class Real, class Device>
+void make_more_room(LaneState<Dim, Real, Device>& s) {
+  auto& m = s.memory;
+  if (s.steps_since_repacked < 100) {
+    const int per_group = m.lanes.particle_count / math::max(1, m.lanes.group_count * m.lanes.width);
+    m.slack = math::min(m.slack + 2, 2 + per_group);
+    m.reserve = m.slack + per_group;
+  }
+  s.steps_since_repacked = 0;
+  ++s.repacked;
+}
+
 /// Sums up for the first step, or anew after a change of loads; `virtual_stress` is the field at the end of
 /// the step to come.
 template <class Exec, class Field, int Dim, class Real, class Device>
@@ -113,19 +127,25 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
             {m.lanes, m.nodes, m.grid, material, volume, m.leavers},
             next_virtual_stress});
   });
-  if (count_leavers(exec, m) == 0) return -1;
-  if (take_in_leavers(exec, m, next_virtual_stress, s.boundary.tractions) > 0) {
+  ++s.steps_since_repacked;
+  const int leavers = count_leavers(exec, m);
+  if (leavers == 0) return -1;
+  // One by one, particles cost eight times as much as in a sweep.
+  const bool one_by_one = leavers < m.lanes.particle_count / 8;
+  if (take_in_leavers(exec, m, next_virtual_stress, s.boundary.tractions, one_by_one) > 0) {
+    make_more_room(s);
     const int lost = repack_lanes(exec, m);
     if (lost >= 0) return lost;
-    ++s.repacked;
     mark_packed_lanes(exec, s);
     detail::sum_lanes(exec, s, next_virtual_stress);
-  } else if (update_occupied(exec, m.lanes, s.boundary)) {
-    if constexpr (Field::loaded) {
-      mark_lanes(exec, m.lanes, m.grid.cells, s.boundary, false);
-      detail::sum_lanes(exec, s, next_virtual_stress);
-    }
+    return -1;
   }
+  bool marked = false;
+  if (update_occupied(exec, m.lanes, s.boundary) && Field::loaded) {
+    mark_lanes(exec, m.lanes, m.grid.cells, s.boundary, false);
+    marked = true;
+  }
+  if (marked || !one_by_one) detail::sum_lanes(exec, s, next_virtual_stress);
   return -1;
 }
 

@@ -40,6 +40,8 @@ struct TakeInLeavers {
     return true;
   }
   KOKKOS_FUNCTION void operator()(int layer, int& homeless) const {
+    for (int g = lanes.layer_first(layer); g < lanes.layer_first(layer + 1); ++g)
+      while (lanes.groups(g).slots > 0 && last_slot_is_empty(lanes.groups(g))) --lanes.groups(g).slots;
     for (int from = math::max(layer - 1, 0); from <= math::min(layer + 1, lanes.layers() - 1); ++from)
       for (int n = leavers.first(from); n < leavers.first(from) + leavers.count(from); ++n) {
         auto& head = leavers.head(n);
@@ -53,6 +55,12 @@ struct TakeInLeavers {
           continue;
         if (head.homeless) ++homeless;
       }
+  }
+  KOKKOS_FUNCTION bool last_slot_is_empty(const LaneGroup<Dim>& group) const {
+    const size_t end = lanes.end(group);
+    for (size_t e = end - lanes.width; e < end; ++e)
+      if (lanes.id(e) >= 0) return false;
+    return true;
   }
   KOKKOS_FUNCTION bool take_in(int n, const typename Leavers<Dim, Real, Device>::Head& head) const {
     constexpr int width = Lanes<Real>::width;
@@ -289,15 +297,15 @@ int count_leavers(const Exec& exec, const LaneMemory<Dim, Real, Device>& m) {
   return count;
 }
 
-/// Brings the leavers to their cells and adds them to the nodes. Returns how many found no place; then
-/// repack_lanes must follow. Waits for the device.
+/// Brings the leavers to their cells and, if asked to, adds them to the nodes. Returns how many found no
+/// place; then repack_lanes must follow. Waits for the device.
 template <class Exec, class Field, int Dim, class Real, class Device>
 int take_in_leavers(const Exec& exec, const LaneMemory<Dim, Real, Device>& m, const Field& virtual_stress,
-                    const BoundaryNodes<Device>& tractions) {
+                    const BoundaryNodes<Device>& tractions, bool scatter) {
   int homeless = 0;
   Kokkos::parallel_reduce("vsb::take_in_leavers", Kokkos::RangePolicy<Exec>(exec, 0, m.lanes.layers()),
                           kernel::TakeInLeavers<Dim, Real, Device, Field>{m.lanes, m.nodes, m.leavers, m.grid,
-                                                                          virtual_stress, tractions, true},
+                                                                          virtual_stress, tractions, scatter},
                           homeless);
   exec.fence();
   return homeless;

@@ -144,6 +144,8 @@ std::vector<unsigned char> LaneEngine<Dim, Real>::save() const {
   w.number(l.slot_count);
   w.number(l.node_count);
   w.number(m.slack);
+  w.number(m.reserve);
+  w.number(state_.steps_since_repacked);
   w.number(prepared_);
   const auto groups = detail::on_host(l.groups);
   std::vector<GroupShape> shape;
@@ -164,11 +166,12 @@ template <int Dim, class Real>
 bool LaneEngine<Dim, Real>::restore(const std::vector<unsigned char>& saved) {
   detail::Reader r(saved);
   auto& m = state_.memory;
-  int width = 0, groups = 0, slots = 0, nodes = 0, slack = 0;
+  int width = 0, groups = 0, slots = 0, nodes = 0, slack = 0, reserve = 0, since = 0;
   CellBox<Dim> box;
   bool prepared = false;
   if (!r.number(width) || width != m.lanes.width || !r.number(box) || !r.number(groups) || !r.number(slots) ||
-      !r.number(nodes) || !r.number(slack) || !r.number(prepared) || groups < 0 || slots < 0 || nodes < 0)
+      !r.number(nodes) || !r.number(slack) || !r.number(reserve) || !r.number(since) || !r.number(prepared) ||
+      groups < 0 || slots < 0 || nodes < 0)
     return false;
   if (static_cast<size_t>(groups) > saved.size()) return false;
   std::vector<GroupShape> shape(static_cast<size_t>(groups));
@@ -176,6 +179,8 @@ bool LaneEngine<Dim, Real>::restore(const std::vector<unsigned char>& saved) {
   if (!lay_out_lanes(exec_, m, box, shape)) return false;
   if (m.lanes.slot_count != slots || m.lanes.node_count != nodes) return false;
   m.slack = slack;
+  m.reserve = reserve;
+  state_.steps_since_repacked = since;
   auto& l = m.lanes;
   const size_t entries = static_cast<size_t>(slots) * l.width;
   const auto id = Kokkos::create_mirror_view(l.id);
