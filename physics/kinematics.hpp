@@ -3,6 +3,7 @@
 /// Strain increment, spin and volume change of a particle over one step, from the velocity gradient L.
 #pragma once
 
+#include <vsb/views/pack.hpp>
 #include <vsb/views/tensor.hpp>
 
 namespace vsb {
@@ -62,7 +63,7 @@ struct DeterminantVolume {
 struct ExponentialVolume {
   template <int Dim, class T>
   KOKKOS_FUNCTION T operator()(T volume, const Matrix<Dim, T>& L, T dt) const {
-    return volume * math::exp(dt * trace(L));
+    return volume * math::exp(T(dt * trace(L)));
   }
 };
 
