@@ -126,7 +126,8 @@ template <bool Cubic, class Field, int Dim, class Real, class Device>
   add_mass_and_momentum(lanes, group, sums);
   const auto bar = field.at(Vector<Dim, Real>::zero(), group.tractions).stress;
   SymmetricTensor<Dim, P> in_lane;
-  static_for<in_lane.size>([&](auto c) VSB_UNROLLED { in_lane[c] = keep_lanes(group.loaded[0], P(bar[c])); });
+  const std::uint64_t cells = group.loaded[0] & group.loaded[0] >> 1;
+  static_for<in_lane.size>([&](auto c) VSB_UNROLLED { in_lane[c] = keep_lanes(cells, P(bar[c])); });
   CellPolynomial<Dim, P> f[Dim];
   force<Cubic>(lanes, group, on.grid.inverse_spacing,
                [&](size_t entry) { return lanes.load_stress(entry) - in_lane; }, f);

@@ -141,7 +141,6 @@ struct LoadGroup {
                  : !same                          ? GroupLoad::mixed
                  : (all & cells) == (any & cells) ? GroupLoad::whole
                                                   : GroupLoad::part;
-    if (group.load == GroupLoad::whole) group.loaded[0] = all & cells;  // of cells now, not of nodes
   }
 };
 
