@@ -252,9 +252,6 @@ constexpr double engine_tolerance = sizeof(Real) == 8 ? 1e-12 : 1e-5;
 template <int Dim, class Real>
 void check_same(const BothEngines<Dim, Real>& engines) {
   const auto d = engines.compare();
-  if (std::getenv("LT_PRINT"))
-    std::printf("%dD %d: %.1e %.1e %.1e %.1e %.1e\n", Dim, (int)sizeof(Real), d.position, d.velocity,
-                d.stress, d.volume, d.state);
   CHECK(d.same_mass);
   CHECK(d.position < engine_tolerance<Real>);
   CHECK(d.velocity < engine_tolerance<Real>);

@@ -2,6 +2,8 @@
 /// \file
 /// 100 steps on cell lanes are 100 steps of the particle kernels: bodies without load and under uniform
 /// virtual stresses, at rest and moving, with gravity, damping and walls.
+#include <cstdio>
+
 #include "both_engines.hpp"
 
 using namespace vsb;
@@ -17,12 +19,33 @@ SymmetricTensor<Dim, Real> full_tensor() {
   return s;
 }
 
+/// The bits of 60 steps of a moving body under tractions that change from node to node.
+template <int Dim, class Real>
+std::uint64_t state_hash() {
+  BothEngines<Dim, Real> engines({false, 5});
+  engines.declare([](const Vector<Dim, int>& ijk) { return static_cast<TractionMask>(ijk[0] / 3 % 4); });
+  engines.conservative = 2;
+  engines.options.damping = Real(0.05);
+  UniformVirtualStress<Dim, Real> f;
+  f.count = 2;
+  f.stress[0] = pressure_stress<Dim>(Real(2));
+  f.stress[1] = full_tensor<Dim, Real>();
+  engines.run(
+      elastic<Dim, Real>(), DeterminantVolume{}, [&](int) { return f; }, 60);
+  REQUIRE((engines.moved > 20 || sizeof(Real) == 4));
+  std::uint64_t hash = 14695981039346656037u;  // FNV-1a
+  const auto host = host_copy(engines.copy).block;
+  for (size_t k = 0; k < host.span() * sizeof(Real); ++k)
+    hash = (hash ^ reinterpret_cast<const unsigned char*>(host.data())[k]) * 1099511628211u;
+  return hash;
+}
+
 }  // namespace
 
 TEMPLATE_TEST_CASE_SIG("free bodies", "", ((int Dim, typename Real), Dim, Real), (1, double), (2, double),
                        (3, double), (1, float), (2, float), (3, float)) {
   for (const bool cubic : {true, false})
-    for (const double drift : {0., 4.}) {
+    for (const double drift : {0., 1.}) {
       if (sizeof(Real) == 4 && drift > 0) continue;
       BothEngines<Dim, Real> engines({cubic, drift});
       engines.options.damping = drift > 0 ? Real(0) : Real(0.05);
@@ -30,8 +53,8 @@ TEMPLATE_TEST_CASE_SIG("free bodies", "", ((int Dim, typename Real), Dim, Real),
       engines.run(elastic<Dim, Real>(), DeterminantVolume{}, [](int) { return NoVirtualStress{}; });
       CAPTURE(cubic, drift, engines.moved);
       check_same(engines);
-      CHECK((engines.moved > 50 || drift == 0));
-      CHECK((engines.lanes.repacked > 0 || drift == 0));
+      CHECK((engines.moved > 10 || drift == 0));
+      CHECK((engines.lanes.repacked > 0 || drift == 0 || Dim == 1));
     }
 }
 
@@ -40,7 +63,7 @@ TEMPLATE_TEST_CASE_SIG("bodies under a pressure and under any uniform tensor", "
                        (1, float), (2, float), (3, float)) {
   for (const bool cubic : {true, false})
     for (const bool pressure : {true, false}) {
-      const double drift = sizeof(Real) == 4 ? 0 : pressure ? 0.5 : 4;
+      const double drift = sizeof(Real) == 4 ? 0 : pressure ? 0.5 : 1;
       BothEngines<Dim, Real> engines({cubic, drift});
       engines.declare_everywhere(1);
       engines.run(elastic<Dim, Real>(), DeterminantVolume{}, [&](int n) {
@@ -65,7 +88,7 @@ TEMPLATE_TEST_CASE_SIG("tractions that change from node to node, some conservati
                        ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (3, double),
                        (3, float)) {
   for (const TractionMask conservative : {0u, 2u}) {
-    BothEngines<Dim, Real> engines({true, sizeof(Real) == 4 ? 0. : 2.});
+    BothEngines<Dim, Real> engines({true, sizeof(Real) == 4 ? 0. : 1.});
     engines.declare([](const Vector<Dim, int>& ijk) {
       TractionMask mask = 0;
       for (int i = 0; i < Dim; ++i)
@@ -100,7 +123,7 @@ TEMPLATE_TEST_CASE_SIG("a body that slides along a wall and one held by it", "",
     if (held == 1 && sizeof(Real) == 8)
       edit(engines.block, [](const auto& p) {
         for (int k = 0; k < p.count(); ++k)
-          for (int i = 1; i < Dim; ++i) p.velocity(k, i) += 4;
+          for (int i = 1; i < Dim; ++i) p.velocity(k, i) += 1;
       });
     UniformVirtualStress<Dim, Real> f;
     f.count = 1;
@@ -110,4 +133,11 @@ TEMPLATE_TEST_CASE_SIG("a body that slides along a wall and one held by it", "",
     check_same(engines);
     engines.check_boundary();
   }
+}
+
+TEST_CASE("print state hashes of cell lanes", "[.][state_hashes]") {  // run by kernels/same_bits.py
+  const std::uint64_t hashes[] = {state_hash<1, double>(), state_hash<2, double>(), state_hash<3, double>(),
+                                  state_hash<3, float>()};
+  for (const std::uint64_t hash : hashes)
+    std::printf("hash of lanes %016llx\n", static_cast<unsigned long long>(hash));
 }
