@@ -428,7 +428,7 @@ int pack_particles(const Exec& exec, const Particles<Dim, Real, Device>& particl
                               Kokkos::Min<int>(found));
       exec.fence();
       // A reduction over nothing, or over particles outside alone, leaves the largest number there is.
-      const int cell = sign * math::min(found, m.grid.cells[i] - 1);
+      const int cell = found == std::numeric_limits<int>::max() ? 0 : sign * found;
       (sign > 0 ? lowest : highest)[i] = cell;
     }
   const kernel::BoxBasis<Dim, Real> basis{m.grid, box_around<Dim, Real>(lowest, highest)};

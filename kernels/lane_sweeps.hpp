@@ -122,6 +122,7 @@ struct MoveGroup {
     } else {
       // Lane by lane: such materials branch.
       for (int l = 0; l < P::width; ++l) {
+        if (lanes.id(entry + static_cast<size_t>(l)) < 0) continue;  // a ghost may be strained without end
         Vector<remembered, Real> state;
         SymmetricTensor<Dim, Real> s;
         Matrix<Dim, Real> L_l;

@@ -95,9 +95,12 @@ KOKKOS_FORCEINLINE_FUNCTION void function_traction(const LoadedLanes<Dim, Real, 
     const P V = lanes.load(lanes.volume_column, entry);
     VirtualStressValue<Dim, P> bar;
     for (int l = 0; l < P::width; ++l) {
-      Vector<Dim, Real> xi_l;
-      for (int i = 0; i < Dim; ++i) xi_l[i] = xi[i][l];
-      const auto at = field.at(on.grid.map(lanes.cell(group, l), xi_l).x, tractions);
+      auto at = VirtualStressValue<Dim, Real>::zero();
+      if (lanes.id(entry + static_cast<size_t>(l)) >= 0) {  // no field need be finite at a ghost's place
+        Vector<Dim, Real> xi_l;
+        for (int i = 0; i < Dim; ++i) xi_l[i] = xi[i][l];
+        at = field.at(on.grid.map(lanes.cell(group, l), xi_l).x, tractions);
+      }
       for (int c = 0; c < bar.stress.size; ++c) bar.stress[c].set(l, at.stress[c]);
       for (int i = 0; i < Dim; ++i) bar.divergence[i].set(l, at.divergence[i]);
     }
@@ -127,8 +130,8 @@ template <bool Cubic, class Field, int Dim, class Real, class Device>
   add_mass_and_momentum(lanes, group, sums);
   const auto bar = field.at(Vector<Dim, Real>::zero(), group.tractions).stress;
   SymmetricTensor<Dim, P> in_lane;
-  static_for<in_lane.size>([&](auto c)
-                               VSB_UNROLLED { in_lane[c] = keep_lanes(group.loaded_cells, P(bar[c])); });
+  const std::uint64_t cells = group.loaded[0] & group.loaded[0] >> 1;
+  static_for<in_lane.size>([&](auto c) VSB_UNROLLED { in_lane[c] = keep_lanes(cells, P(bar[c])); });
   CellPolynomial<Dim, P> f[Dim];
   force<Cubic>(
       lanes, group, on.grid.inverse_spacing, [&](size_t entry) { return lanes.load_stress(entry) - in_lane; },

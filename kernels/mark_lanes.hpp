@@ -141,7 +141,6 @@ struct LoadGroup {
                  : !same                          ? GroupLoad::mixed
                  : (all & cells) == (any & cells) ? GroupLoad::whole
                                                   : GroupLoad::part;
-    group.loaded_cells = all & cells;
   }
 };
 

@@ -42,7 +42,6 @@ struct LaneGroup {
   GroupLoad load;
   TractionMask tractions;             ///< of the loaded nodes, where they have the same
   std::uint64_t loaded[corner_rows];  ///< bit l: the lower node of lane l is loaded, up to l = width
-  std::uint64_t loaded_cells;         ///< bit l: all nodes of the cell in lane l are loaded
 };
 
 /// A box of cells of a grid.

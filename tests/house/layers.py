@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """layers.py ROOT: the rooms include only what they may, and nothing names the package hosts of one machine.
 
-  views    the standard library, Kokkos, views
+  views    the standard library, Kokkos, views, the compiler's intrinsics
   physics  the standard library, Kokkos_Complex, physics, and of views what describes a point (POINT_VIEWS)
   kernels  the standard library, Kokkos, kernels, physics, views
 The programs' libraries (files, command line, formats) live in apps alone, so the above rules them out here.
@@ -12,10 +12,10 @@ import pathlib
 import re
 import sys
 
-POINT_VIEWS = ("tensor", "kokkos_compat", "masks", "pack")
+POINT_VIEWS = ("tensor", "kokkos_compat", "masks", "pack", "static_for")
 STANDARD = r"[a-z_]+"  # <vector>; other libraries' headers have a folder, a suffix or a capital letter
 ALLOWED = {
-    "views": [STANDARD, r"Kokkos_\w+\.hpp", r"vsb/views/\w+\.hpp"],
+    "views": [STANDARD, r"Kokkos_\w+\.hpp", r"vsb/views/\w+\.hpp", r"immintrin\.h"],
     "physics": [STANDARD, r"Kokkos_Complex\.hpp", r"vsb/physics/\w+\.hpp",
                 rf"vsb/views/({'|'.join(POINT_VIEWS)})\.hpp"],
     "kernels": [STANDARD, r"Kokkos_\w+\.hpp", r"vsb/(kernels|physics|views)/\w+\.hpp"],

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// The step on cell lanes beside the step of the particle kernels, from the same particles, loads and
+/// supports.
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <vsb/kernels/lane_step.hpp>
+
+#include "support.hpp"
+
+namespace vsb::test {
+
+/// Where cell lanes keep every node: its number in the grid, and the place. Fails where a grid node has two.
+template <int Dim, class Real>
+std::map<int, int> places_of_nodes(const CellLanes<Dim, Real, Device>& lanes,
+                                   const CellNumbering<Dim>& grid) {
+  const auto groups = read(lanes.groups);
+  std::map<int, int> places;
+  int twice = 0;
+  for (int g = 0; g < lanes.group_count; ++g)
+    for (int l = 0; l < lanes.width; ++l) {
+      const auto& group = groups(g);
+      const auto cell = lanes.cell(group, l);
+      for (int a = 0; a < 1 << Dim; ++a) {
+        auto ijk = cell;
+        bool inside = true;
+        for (int i = 0; i < Dim; ++i) {
+          ijk[i] += a >> i & 1;
+          inside = inside && ijk[i] >= 0 && ijk[i] <= grid.cells[i];
+        }
+        if (!inside) continue;
+        const int place = group.node[a >> 1] + l + (a & 1);
+        twice += places.emplace(grid.node_index(ijk), place).first->second != place;
+      }
+    }
+  CHECK(twice == 0);
+  return places;
+}
+
+/// The tractions that act at the nodes of a grid according to cell lanes.
+template <int Dim, class Real>
+std::vector<TractionMask> tractions_of_nodes(const LaneState<Dim, Real, Device>& s) {
+  const auto tractions = read(s.boundary.tractions);
+  std::vector<TractionMask> masks(static_cast<size_t>(s.memory.grid.node_count()), 0);
+  for (const auto& [node, place] : places_of_nodes<Dim, Real>(s.memory.lanes, s.memory.grid))
+    masks[static_cast<size_t>(node)] = tractions(place);
+  return masks;
+}
+
+/// Largest differences between particles, each relative to the largest number of its kind: positions to the
+/// cell size.
+struct Difference {
+  double position = 0, velocity = 0, stress = 0, volume = 0, state = 0;
+  bool same_mass = true;
+  double largest() const { return std::max({position, velocity, stress, volume, state}); }
+};
+
+template <class A, class B, int Dim, class Real>
+Difference difference(const A& a, const B& b, const UniformGrid<Dim, Real>& grid) {
+  Difference d;
+  const auto compare = [&](const auto& of_a, const auto& of_b, int columns) {
+    double most = 0, scale = 0;
+    for (int p = 0; p < static_cast<int>(of_a.extent(0)); ++p)
+      for (int c = 0; c < columns; ++c) {
+        const double x = of_a(p, c), y = of_b(p, c);
+        // NaN must not hide: it is a difference as large as there is.
+        most = std::abs(x - y) <= most ? most : std::isfinite(x - y) ? std::abs(x - y) : 1e300;
+        scale = std::max(scale, std::abs(x));
+      }
+    return most / (scale > 0 ? scale : 1);
+  };
+  for (int p = 0; p < a.count(); ++p) {
+    for (int i = 0; i < Dim; ++i) {
+      const double x = std::abs(static_cast<double>(a.position(p, i) - b.position(p, i)) / grid.spacing[i]);
+      d.position = x <= d.position ? d.position : std::isfinite(x) ? x : 1e300;
+    }
+    const double V = std::abs(static_cast<double>(b.volume(p)) / static_cast<double>(a.volume(p)) - 1);
+    d.volume = V <= d.volume ? d.volume : std::isfinite(V) ? V : 1e300;
+    d.same_mass = d.same_mass && a.mass(p) == b.mass(p);
+  }
+  d.velocity = compare(a.velocity, b.velocity, Dim);
+  d.stress = compare(a.cauchy_stress, b.cauchy_stress, a.stress_size);
+  d.state = compare(a.material_state, b.material_state, static_cast<int>(a.material_state.extent(1)));
+  return d;
+}
+
+/// What the bodies below are like.
+struct BodyShape {
+  bool cubic = false;
+  double drift = 0;            ///< m/s, of the whole body in all directions
+  bool on_lower_face = false;  ///< of x
+};
+
+/// A block with a cavity and rough faces, particles anywhere in cells of 2^Dim, density about 1 kg/m^Dim,
+/// for a material of about 100 Pa: in 100 steps of 2 ms a wave runs through four cells or more.
+///
+/// In float all loads, stresses and velocities are to be `amplitude` times as large, so that particles move
+/// little: the particle kernels round positions in the grid, and cell lanes positions in a cell. And in
+/// double a body drifts by less than a cell: cell lanes find nodal masses and momenta as differences of
+/// moments, to epsilon of those of a cell, so that a particle delta h before the upper face of a cell without
+/// others has a strain of up to epsilon / delta v dt / h from rounding alone.
+template <int Dim, class Real>
+struct BothEngines {
+  static constexpr Real amplitude = sizeof(Real) == 4 ? Real(1e-5) : Real(1);
+  LinearBasis<Dim, Real> basis;
+  ParticleBlock<Dim, Real, Device> block, copy;  ///< for the particle kernels, for cell lanes
+  State<Dim, Real, Device> state;
+  LaneState<Dim, Real, Device> lanes;
+  StepOptions<Dim, Real> options;
+  long long moved = 0;              ///< from cell to cell, or packed anew
+  bool load_seen[4] = {};           ///< by GroupLoad
+  std::vector<TractionMask> masks;  ///< declared at the grid's nodes
+  TractionMask conservative = 0;
+
+  explicit BothEngines(const BodyShape& shape, unsigned seed = 81) {
+    basis.grid = make_grid<Dim, Real>({{38, 18, 18}});
+    if (shape.cubic) {
+      Vector<Dim, Real> h;
+      for (int i = 0; i < Dim; ++i) h[i] = Real(0.5);
+      basis.grid = UniformGrid<Dim, Real>(basis.grid.lower, h, basis.grid.cells);
+    }
+    const auto& grid = basis.grid;
+    Random random(seed);
+    std::vector<Vector<Dim, Real>> places;
+    for_each_cell(grid, [&](const Vector<Dim, int>& cell) {
+      double r2 = 0;
+      for (int i = 0; i < Dim; ++i) {
+        const int lowest = i == 0 && shape.on_lower_face ? 0 : 3;
+        if (cell[i] < lowest || cell[i] >= (i == 0 ? 24 : 9)) return;
+        r2 += (cell[i] - 6.2) * (cell[i] - 6.2);
+      }
+      if (r2 < 1.5) return;
+      for (int part = 0; part < 1 << Dim; ++part) {
+        if (random.index(16) == 0) continue;
+        Vector<Dim, Real> x;
+        for (int i = 0; i < Dim; ++i)
+          x[i] =
+              grid.lower[i] + grid.spacing[i] * (static_cast<Real>(cell[i]) + random.draw<Real>(0.02, 0.48) +
+                                                 static_cast<Real>(0.5 * (part >> i & 1)));
+        places.push_back(x);
+      }
+    });
+    random.shuffle(places);
+    const int n = static_cast<int>(places.size());
+    block = allocate_particles<Dim, Real, Device>(n);
+    edit(block, [&](const auto& p) {
+      for (int k = 0; k < n; ++k) {
+        for (int i = 0; i < Dim; ++i) {
+          p.position(k, i) = places[static_cast<size_t>(k)][i];
+          p.velocity(k, i) = amplitude * static_cast<Real>(shape.drift + random(-0.1, 0.1));
+        }
+        p.volume(k) = grid.cell_volume() / Real(1 << Dim) * random.draw<Real>(0.9, 1.1);
+        p.mass(k) = p.volume(k) * random.draw<Real>(0.9, 1.1);
+        for (int c = 0; c < p.stress_size; ++c) p.cauchy_stress(k, c) = amplitude * random.draw<Real>(-1, 1);
+      }
+    });
+    copy = allocate_particles<Dim, Real, Device>(n);
+    lanes.memory.grid = grid;
+    options.dt = static_cast<Real>(0.002);
+    masks.assign(static_cast<size_t>(grid.node_count()), 0);
+  }
+
+  /// All three must be called, if at all, before `run`.
+  void remember(int columns) {
+    const int n = block.particles.count();
+    allocate_material_state(block, n, columns);
+    allocate_material_state(copy, n, columns);
+    lanes.memory.lanes.state_size = columns;
+  }
+  void declare_everywhere(TractionMask mask) {
+    lanes.boundary.everywhere = mask;
+    for (auto& m : masks) m |= mask;
+  }
+  /// where(ijk) gives the tractions of a node.
+  template <class Where>
+  void declare(const Where& where) {
+    lanes.boundary.declared = BoundaryNodes<Device>("vsb::declared", masks.size());
+    edit(lanes.boundary.declared, [&](const auto& host) {
+      for (size_t I = 0; I < masks.size(); ++I) {
+        host(I) = where(basis.grid.node_ijk(static_cast<int>(I)));
+        masks[I] |= host(I);
+      }
+    });
+  }
+
+  /// field_at(n) is the field at the end of step n. False where a particle is lost.
+  template <class Material, class Volume, class FieldAt>
+  void run(const Material& material, const Volume& volume, const FieldAt& field_at, int steps = 100) {
+    Kokkos::deep_copy(copy.block, block.block);
+    if (block.state_block.size() > 0) Kokkos::deep_copy(copy.state_block, block.state_block);
+    state = make_state(block.particles, basis);
+    edit(state.occupancy.tractions,
+         [&](const auto& host) { std::copy(masks.begin(), masks.end(), host.data()); });
+    state.occupancy.conservative = lanes.boundary.conservative = conservative;
+    edit(state.nodes.fixed_components, [&](const auto& host) {
+      for (int I = 0; I < basis.node_count(); ++I) {
+        const auto ijk = basis.grid.node_ijk(I);
+        for (int i = 0; i < Dim; ++i)
+          for (const int side : {0, 1})
+            if (ijk[i] == side * basis.grid.cells[i])
+              host(I) = static_cast<ComponentMask>(host(I) | lanes.memory.walls.fixed[i][side]);
+      }
+    });
+    options.volume_update = volume;
+    const std::vector<Body<Real>> bodies{{0, block.particles.count(), material}};
+    REQUIRE(pack_lanes(Exec(), copy.particles, lanes) == -1);
+    prepare_lane_step(Exec(), lanes, field_at(0));
+    note_loads();
+    for (int n = 0; n < steps; ++n) {
+      REQUIRE(lane_step(Exec(), lanes, material, volume, field_at(n + 1), options) == -1);
+      moved += count_leavers(Exec(), lanes.memory);  // none after packing anew
+      REQUIRE(step(Exec(), state, bodies, basis, field_at(n), options) == -1);
+      if (n % 5 == 0) note_loads();
+    }
+    moved += lanes.repacked;
+    unpack_particles(Exec(), lanes.memory, copy.particles);
+  }
+  Difference compare() const { return difference(read(block), read(copy), basis.grid); }
+
+  /// Whether both have the same tractions at the same nodes, some of them at all.
+  void check_boundary() {
+    REQUIRE(update_occupancy(Exec(), block.particles, state.occupancy, basis) == -1);
+    const auto boundary = read(state.occupancy.boundary);
+    const auto mine = tractions_of_nodes(lanes);
+    int wrong = 0;
+    for (size_t I = 0; I < mine.size(); ++I) wrong += boundary(I) != mine[I];
+    CHECK(wrong == 0);
+    CHECK(state.occupancy.boundary_node_count > 0);
+    CHECK(count_loaded_nodes(Exec(), lanes.memory.lanes, lanes.boundary) ==
+          state.occupancy.boundary_node_count);
+  }
+
+ private:
+  void note_loads() {
+    const auto groups = read(lanes.memory.lanes.groups);
+    for (int g = 0; g < lanes.memory.lanes.group_count; ++g)
+      load_seen[static_cast<int>(groups(g).load)] = true;
+  }
+};
+
+template <int Dim, class Real>
+LinearElastic<Real> elastic() {
+  return LinearElastic<Real>::from_young(100, 0.3);
+}
+
+/// 1e-12 in double, 1e-5 in float.
+template <class Real>
+constexpr double engine_tolerance = sizeof(Real) == 8 ? 1e-12 : 1e-5;
+
+template <int Dim, class Real>
+void check_same(const BothEngines<Dim, Real>& engines) {
+  const auto d = engines.compare();
+  CHECK(d.same_mass);
+  CHECK(d.position < engine_tolerance<Real>);
+  CHECK(d.velocity < engine_tolerance<Real>);
+  CHECK(d.stress < engine_tolerance<Real>);
+  CHECK(d.volume < engine_tolerance<Real>);
+  CHECK(d.state < engine_tolerance<Real>);
+}
+
+}  // namespace vsb::test

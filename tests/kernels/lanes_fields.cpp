@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// 100 steps on cell lanes are 100 steps of the particle kernels: virtual stresses that vary in space, with
+/// their divergence.
+#include <vsb/physics/traction_fields.hpp>
+
+#include "both_engines.hpp"
+
+using namespace vsb;
+using namespace vsb::test;
+
+namespace {
+
+/// The centre of the body of BothEngines' cavity, and anything else of the fields that depends on its grid.
+template <int Dim, class Real>
+Vector<Dim, Real> place_in(const UniformGrid<Dim, Real>& grid, Real cells) {
+  Vector<Dim, Real> x;
+  for (int i = 0; i < Dim; ++i) x[i] = grid.lower[i] + cells * grid.spacing[i];
+  return x;
+}
+
+template <int Dim, class Real>
+TractionFields<Dim, Real> four_fields(const UniformGrid<Dim, Real>& grid, Real amplitude) {
+  TractionFields<Dim, Real> f;
+  AffineStress<Dim, Real> affine;
+  affine.value = pressure_stress<Dim>(Real(1));
+  for (int k = 0; k < Dim; ++k) {
+    affine.gradient[k] = SymmetricTensor<Dim, Real>::zero();
+    for (int c = 0; c < affine.value.size; ++c)
+      affine.gradient[k][c] = static_cast<Real>(0.1 * (k + 1) - 0.06 * c);
+  }
+  Vector<Dim, Real> all, up;
+  for (int i = 0; i < Dim; ++i) {
+    all[i] = Real(1);
+    up[i] = static_cast<Real>(i == 0);
+  }
+  const auto centre = place_in<Dim, Real>(grid, Real(6.7));
+  f.field[0] = affine;
+  f.field[1] = RadialBlend<Dim, Real>{centre,
+                                      all,
+                                      grid.spacing[0],
+                                      3 * grid.spacing[0],
+                                      pressure_stress<Dim>(Real(2)),
+                                      pressure_stress<Dim>(Real(-1))};
+  f.field[2] = HydrostaticStress<Dim, Real>{Real(0.5), centre[0], grid.spacing[0], up};
+  f.field[3] = UniformStress<Dim, Real>{pressure_stress<Dim>(Real(0.5))};
+  f.count = 4;
+  for (int k = 0; k < 4; ++k) f.factor[k] = amplitude * static_cast<Real>(1 - 0.2 * k);
+  return f;
+}
+
+/// A pressure that grows without bound towards a point, in equilibrium with nothing: sbar = -p / r^2 I.
+template <int Dim, class Real>
+struct Singular {
+  Vector<Dim, Real> centre;
+  Real p;
+  KOKKOS_FUNCTION VirtualStressValue<Dim, Real> operator()(const Vector<Dim, Real>& x) const {
+    const auto d = x - centre;
+    const Real r2 = dot(d, d);
+    return {pressure_stress<Dim>(p / r2), (2 * p / (r2 * r2)) * d};
+  }
+};
+
+}  // namespace
+
+TEMPLATE_TEST_CASE_SIG("fields of all kinds, other ones from node to node", "",
+                       ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (3, double),
+                       (2, float)) {
+  for (const bool mixed : {false, true}) {
+    BothEngines<Dim, Real> engines({!mixed, sizeof(Real) == 4 ? 0. : 1.5});
+    const auto f = four_fields<Dim, Real>(engines.basis.grid, engines.amplitude);
+    if (mixed) {
+      engines.declare([](const Vector<Dim, int>& ijk) {
+        TractionMask mask = 0;
+        for (int i = 0; i < Dim; ++i) mask |= 1u << ((ijk[i] + i) / 2 % 5);  // bit 4: no field has it
+        return mask;
+      });
+      engines.conservative = 4;
+    } else {
+      engines.declare_everywhere(15);
+    }
+    engines.run(elastic<Dim, Real>(), DeterminantVolume{}, [&](int n) {
+      auto now = f;
+      for (int k = 0; k < 4; ++k) now.factor[k] *= static_cast<Real>(0.01 * n);
+      return now;
+    });
+    CAPTURE(mixed, engines.moved);
+    check_same(engines);
+    engines.check_boundary();
+    CHECK(engines.load_seen[static_cast<int>(GroupLoad::mixed)] == mixed);
+    CHECK((Dim == 1 || mixed || engines.load_seen[static_cast<int>(GroupLoad::whole)]));
+  }
+}
+
+TEMPLATE_TEST_CASE_SIG("a rigid body force that balances a field", "", ((int Dim), Dim), 2, 3) {
+  BothEngines<Dim, double> engines({true, 0});
+  auto f = four_fields<Dim, double>(engines.basis.grid, 1);
+  f.balanced = 5;
+  f.balance.about = place_in<Dim, double>(engines.basis.grid, 8);
+  for (int i = 0; i < Dim; ++i) f.balance.constant[i] = 0.3 * (i + 1);
+  f.balance.spin(0, 1) = 0.2;
+  f.balance.spin(1, 0) = -0.2;
+  engines.declare_everywhere(15);
+  engines.run(
+      elastic<Dim, double>(), DeterminantVolume{}, [&](int) { return f; }, 40);
+  check_same(engines);
+}
+
+TEMPLATE_TEST_CASE_SIG("a function of one's own, singular where there is no particle", "",
+                       ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (3, double)) {
+  // At the centre of the cavity, which is the centre of a void cell of a group.
+  BothEngines<Dim, Real> engines({true, 0});
+  engines.declare_everywhere(1);
+  const Singular<Dim, Real> singular{place_in<Dim, Real>(engines.basis.grid, Real(6.5)), Real(0.05)};
+  engines.run(elastic<Dim, Real>(), DeterminantVolume{}, [&](int) { return virtual_stress_of(singular); });
+  CAPTURE(engines.moved);
+  check_same(engines);
+  engines.check_boundary();
+}
