@@ -67,6 +67,23 @@ bool run(const char* name, const Size& size, Load load, int axis) {
   return findings.empty();
 }
 
+/// Particles change their cells: packing, leaving, arriving, and packing anew.
+template <int Dim, class Real>
+bool run_moving(const char* name, const Size& size) {
+  auto column = make_moving_block<Dim, Real>(size, {{0.1, 0.05, 0.1}});
+  scene_name = name;
+  auto s = make_lanes(column);
+  scene_name.clear();
+  prepare_lane_step(Exec(), s, NoVirtualStress{});
+  const auto findings = check_moving(column, s, 17, [&](int n) {
+    if (n == 14) scene_name = name;
+    step(column, s, NoVirtualStress{});
+  });
+  scene_name.clear();
+  if (!findings.empty()) std::fprintf(stderr, "vsb_instructions: %s: %s\n", name, findings.c_str());
+  return findings.empty();
+}
+
 bool run_all() {
   const Size small3{"small", 5, 12, 2}, dense3{"dense", 3, 6, 4}, small2{"small", 12, 40, 2},
       small1{"small", 1, 200, 2};
@@ -77,6 +94,7 @@ bool run_all() {
   good = run<3, double>("3d_double_64_per_cell", dense3, Load::off, 0) && good;
   good = run<2, double>("2d_double_loaded", small2, Load::free_faces, 0) && good;
   good = run<2, float>("2d_float", small2, Load::off, 0) && good;
+  good = run_moving<3, double>("3d_double_moving", {"block", 6, 6, 2, 9, 9}) && good;
   return run<1, double>("1d_double_loaded", small1, Load::free_faces, 0) && good;
 }
 

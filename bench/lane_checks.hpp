@@ -194,4 +194,31 @@ std::string check_lane_step(const Column<Dim, Real>& column, const Lane<Dim, Rea
   return findings.text();
 }
 
+/// After so many calls of run(n) no particle of a free flight, no mass and no momentum is missing.
+template <int Dim, class Real, class Run>
+std::string check_moving(const Column<Dim, Real>& column, const Lane<Dim, Real>& s, int steps,
+                         const Run& run) {
+  Findings<Real> findings;
+  const auto& lanes = s.memory.lanes;
+  Sum momentum[Dim];
+  const auto mass = [&] {
+    return lane_sum(s, [&](const auto& p, const auto&) { return p(lanes.mass_column); });
+  };
+  const Sum masses = mass();
+  for (int i = 0; i < Dim; ++i) momentum[i] = lane_momentum(s, i);
+  for (int n = 0; n < steps; ++n) run(n);
+  const auto id = snapshot(s.memory.lanes.id);
+  std::vector<int> times(static_cast<size_t>(column.block.particles.count()), 0);
+  for (int e = 0; e < s.memory.lanes.slot_count * s.memory.lanes.width; ++e)
+    if (const int p = id(static_cast<size_t>(e)); p >= 0) ++times[static_cast<size_t>(p)];
+  findings.require(std::count(times.begin(), times.end(), 1) == column.block.particles.count(),
+                   "particles are missing or there twice");
+  findings.require_equal(mass(), masses, "mass");
+  for (int i = 0; i < Dim; ++i) {
+    const Sum now = lane_momentum(s, i);
+    findings.require_equal(now, momentum[i], "momentum");
+  }
+  return findings.text();
+}
+
 }  // namespace vsb::bench

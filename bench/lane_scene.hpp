@@ -33,7 +33,8 @@ template <int Dim, class Real>
 Lane<Dim, Real> make_lanes(const Column<Dim, Real>& column) {
   Lane<Dim, Real> s;
   s.memory.grid = column.basis.grid;
-  s.memory.walls.fixed[column.axis][0] = static_cast<ComponentMask>((1 << Dim) - 1);
+  if (column.options.damping > 0)  // at rest
+    s.memory.walls.fixed[column.axis][0] = static_cast<ComponentMask>((1 << Dim) - 1);
   s.boundary.everywhere = column.load == Load::free_faces ? 1 : 0;
   if (pack_lanes(Exec(), column.block.particles, s) >= 0)
     throw std::runtime_error("a particle of the column is outside its grid");
@@ -46,6 +47,21 @@ Lane<Dim, Real> make_lanes(const Column<Dim, Real>& column) {
 template <class Field, int Dim, class Real>
 void step(const Column<Dim, Real>& column, Lane<Dim, Real>& s, const Field& field) {
   lane_step(Exec(), s, column.material, DeterminantVolume{}, field, column.options);
+}
+
+/// The column without load and support, on its way by so many cells per step in all directions.
+template <int Dim, class Real>
+Column<Dim, Real> make_moving_block(const Size& size, const Vector<Dim, double>& cells_per_step) {
+  auto column = make_column<Dim, Real>(size, Load::off, 0);
+  column.options.damping = 0;
+  column.options.gravity = Vector<Dim, Real>::zero();
+  const auto host = host_copy(column.block);
+  for (int p = 0; p < host.particles.count(); ++p)
+    for (int i = 0; i < Dim; ++i)
+      host.particles.velocity(p, i) +=
+          static_cast<Real>(cells_per_step[i] * column.spacing()) / column.options.dt;
+  copy_to_device(host, column.block);
+  return column;
 }
 
 /// Bytes that the steps touch: particles with their ghosts, groups, nodes and marks; lists of leavers are
