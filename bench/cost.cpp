@@ -127,8 +127,9 @@ void print(const Row& row) {
               particle_count<3>(row.what.size), static_cast<int>(std::pow(row.what.size.per_direction, 3)));
   std::printf("  base %.2f ns per particle and step (10 %% quantile %.2f)", r["base ns"], r["base 10 % ns"]);
   if (row.what.has_row) std::printf("; the paper: %.0f ns", 1000 * p.base_us);
-  std::printf("\n  %.0f flops: %.0f %% of the FMA rate; at least %.0f bytes: %.0f %% of the stream rate\n",
-              r["flops"], r["share of FMA %"], r["least bytes"], r["share of stream %"]);
+  std::printf(
+      "\n  %.0f flops: %.0f %% of the FMA rate; at least %.0f bytes: %.0f %% of the stream rate of memory\n",
+      r["flops"], r["share of FMA %"], r["least bytes"], r["share of stream %"]);
   std::printf("  bytes per particle: state %.0f, resident while stepping %.0f, peak with set-up %.0f\n",
               r["state bytes"], r["stepping bytes"], r["peak bytes"]);
   print_extras(r, "extra by MOD",

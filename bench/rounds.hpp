@@ -49,16 +49,22 @@ double seconds_of(const Work& work) {
   return now() - start;
 }
 
-/// Every variant between two steps of the base, with which it is compared, in every round.
+/// Seconds of a step that follows one of its own kind: what came before a step decides what the caches hold.
+inline double seconds_in_a_row(const Variant& variant) {
+  variant.step();
+  return seconds_of(variant.step);
+}
+
+/// Every variant between two measurements of the base, with which it is compared, in every round.
 inline Rounds measure_in_turns(const Variant& base, std::vector<Variant> variants, int rounds) {
   variants.insert(variants.begin(), {"null", base.step});
   std::vector<std::vector<double>> ratio(variants.size()), difference(variants.size());
   Rounds found;
-  seconds_of(base.step);
-  double before = seconds_of(base.step);
+  seconds_in_a_row(base);
+  double before = seconds_in_a_row(base);
   for (int round = 0; round < rounds; ++round)
     for (size_t v = 0; v < variants.size(); ++v) {
-      const double here = seconds_of(variants[v].step), after = seconds_of(base.step),
+      const double here = seconds_in_a_row(variants[v]), after = seconds_in_a_row(base),
                    around = 0.5 * (before + after);
       ratio[v].push_back(here / around);
       difference[v].push_back(here - around);
