@@ -41,7 +41,7 @@ struct Packed {
     });
   }
   Kokkos::RangePolicy<Exec> over_chunks() const {
-    return {Exec(), 0, lanes.memory.lanes.node_count / lanes.memory.lanes.width};
+    return Kokkos::RangePolicy<Exec>(Exec(), 0, lanes.memory.lanes.node_count / lanes.memory.lanes.width);
   }
   void run_nodes() {
     const auto& m = lanes.memory;
