@@ -124,7 +124,8 @@ void stretch_nodes(const Lane<Dim, Real>& s, double g) {
 /// nodes get the mass of all particles. g is so small that no particle leaves its cell.
 template <int Dim, class Real, class Run>
 std::string check_lane_motion(const Lane<Dim, Real>& s, const Run& run) {
-  constexpr double g = 1e-4;
+  const auto& cells = s.memory.grid.cells;
+  const double g = 0.02 / *std::max_element(&cells[0], &cells[0] + Dim);
   Findings<Real> findings;
   const auto& lanes = s.memory.lanes;
   const auto volume = [&] {

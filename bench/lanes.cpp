@@ -112,7 +112,11 @@ void add_lanes(const Size& size) {
                move = sum + word * (Dim + 1 + stress);
   for (const Load load : {Load::off, Load::end_face, Load::free_faces}) {
     add_one(
-        "lane_sum", load, sum, [](S& s) { return check_lane_sums(s.column, s.lanes, [&] { s.run_sum(); }); },
+        "lane_sum", load, sum,
+        [](S& s) {
+          s.lanes = make_lanes(s.column);  // steps change volumes, and by as much the resultant of a load
+          return check_lane_sums(s.column, s.lanes, [&] { s.run_sum(); });
+        },
         [](S& s) { s.run_sum(); });
     add_one(
         "lane_move", load, move, [](S& s) { return check_lane_motion(s.lanes, [&] { s.run_move(); }); },

@@ -49,13 +49,15 @@ double seconds_of(const Work& work) {
   return now() - start;
 }
 
-/// Seconds of a step that follows one of its own kind: what came before a step decides what the caches hold.
+/// Seconds of a step that follows two of its own kind: what came before a step decides what the caches hold.
 inline double seconds_in_a_row(const Variant& variant) {
+  variant.step();
   variant.step();
   return seconds_of(variant.step);
 }
 
-/// Every variant between two measurements of the base, with which it is compared, in every round.
+/// Every variant between two measurements of the base, with which it is compared, in every round; each round
+/// begins with another one.
 inline Rounds measure_in_turns(const Variant& base, std::vector<Variant> variants, int rounds) {
   variants.insert(variants.begin(), {"null", base.step});
   std::vector<std::vector<double>> ratio(variants.size()), difference(variants.size());
@@ -63,7 +65,8 @@ inline Rounds measure_in_turns(const Variant& base, std::vector<Variant> variant
   seconds_in_a_row(base);
   double before = seconds_in_a_row(base);
   for (int round = 0; round < rounds; ++round)
-    for (size_t v = 0; v < variants.size(); ++v) {
+    for (size_t k = 0; k < variants.size(); ++k) {
+      const size_t v = (k + static_cast<size_t>(round) * 7) % variants.size();
       const double here = seconds_in_a_row(variants[v]), after = seconds_in_a_row(base),
                    around = 0.5 * (before + after);
       ratio[v].push_back(here / around);
