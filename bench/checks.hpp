@@ -7,6 +7,7 @@
 
 #include "scene.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vsb/kernels/health.hpp>
@@ -46,7 +47,7 @@ class Findings {
 
 /// The sum of term(particles, p) over all particles, which lie on the host.
 template <int Dim, class Real, class Term>
-Sum particle_sum(const Scene<Dim, Real>& scene, const Term& term) {
+Sum particle_sum(const Column<Dim, Real>& scene, const Term& term) {
   const auto host = host_copy(scene.block);
   Sum sum;
   for (int p = 0; p < host.particles.count(); ++p) sum.add(static_cast<double>(term(host.particles, p)));
@@ -54,7 +55,7 @@ Sum particle_sum(const Scene<Dim, Real>& scene, const Term& term) {
 }
 
 template <int Dim, class Real>
-Sum particle_momentum(const Scene<Dim, Real>& scene, int i) {
+Sum particle_momentum(const Column<Dim, Real>& scene, int i) {
   return particle_sum(scene, [i](const auto& p, int n) { return p.mass(n) * p.velocity(n, i); });
 }
 
@@ -87,12 +88,12 @@ Sum node_momentum(const Scene<Dim, Real>& scene, const Fields& field, int i) {
 
 /// N1 in closed form: all active nodes but those two layers or more below the free faces.
 template <int Dim, class Real>
-int expected_boundary_nodes(const Scene<Dim, Real>& scene) {
+int expected_boundary_nodes(const Column<Dim, Real>& scene) {
   const Size& size = scene.size;
   int layer = 1, inner = 1;
   for (int i = 1; i < Dim; ++i) {
     layer *= size.cells_across + 1;
-    inner *= size.cells_across - 3;
+    inner *= std::max(size.cells_across - 3, 0);
   }
   if (scene.load == Load::off) return 0;
   if (scene.load == Load::end_face) return 2 * layer;

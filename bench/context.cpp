@@ -4,8 +4,6 @@
 
 #include "context.hpp"
 
-#include <benchmark/benchmark.h>
-
 #include <Kokkos_Macros.hpp>
 #include <build_info.hpp>
 #include <fstream>
@@ -54,16 +52,15 @@ std::string kokkos_version() {
 
 }  // namespace
 
-void add_context(const std::string& backend, int threads) {
-  benchmark::AddCustomContext("vsb version", build_info::version);
-  benchmark::AddCustomContext("git commit", build_info::commit);
-  benchmark::AddCustomContext("Kokkos",
-                              kokkos_version() + ", " + backend + ", threads: " + std::to_string(threads));
-  benchmark::AddCustomContext("compiler", compiler());
-  benchmark::AddCustomContext("build type", build_info::build_type);
-  benchmark::AddCustomContext("flags", build_info::flags);
-  benchmark::AddCustomContext("instruction set", instruction_set());
-  benchmark::AddCustomContext("CPU", cpu_model());
+std::vector<std::pair<std::string, std::string>> describe_build(const std::string& backend, int threads) {
+  return {{"vsb version", build_info::version},
+          {"git commit", build_info::commit},
+          {"Kokkos", kokkos_version() + ", " + backend + ", threads: " + std::to_string(threads)},
+          {"compiler", compiler()},
+          {"build type", build_info::build_type},
+          {"flags", build_info::flags},
+          {"instruction set", instruction_set()},
+          {"CPU", cpu_model()}};
 }
 
 }  // namespace vsb::bench

@@ -4,10 +4,12 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace vsb::bench {
 
-/// Adds version, commit, compiler, flags, processor and the given backend and threads to the context.
-void add_context(const std::string& backend, int threads);
+/// Version, commit, compiler, flags, processor and the given backend and threads, each with its name.
+std::vector<std::pair<std::string, std::string>> describe_build(const std::string& backend, int threads);
 
 }  // namespace vsb::bench

@@ -50,10 +50,12 @@ int main(int argc, char** argv) {
 
   setenv("OMP_PROC_BIND", "false", 0);  // Kokkos warns where it is not set
   Kokkos::initialize();
-  add_context(Exec::name(), Exec().concurrency());
+  for (const auto& [name, value] : describe_build(Exec::name(), Exec().concurrency()))
+    benchmark::AddCustomContext(name, value);
   register_kernels();
   register_steps();
   register_extra_cost();
+  register_lanes();
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   Kokkos::finalize();

@@ -85,5 +85,6 @@ void time(benchmark::State& state, const std::string& findings, int particles, d
 void register_kernels();
 void register_steps();
 void register_extra_cost();
+void register_lanes();
 
 }  // namespace vsb::bench

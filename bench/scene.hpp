@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// The scene of all benchmarks: the column of the paper's Table 3, 10 m long, fixed at its lower end, in a
-/// grid with one layer of void cells beyond every free face.
+/// grid with void cells beyond every free face; with as many cells across as along it is a block.
 ///
 /// Particles lie on a lattice, each jittered within its cell; velocities and stresses are random with a fixed
 /// seed, so that no number is zero or denormal. Loads and gravity are so small that no particle ever leaves
@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -33,9 +34,11 @@ enum class Load { off, end_face, free_faces };
 /// How fine the column is.
 struct Size {
   const char* name;
-  int cells_across;   ///< in each direction across the column
-  int cells_along;    ///< over its length
-  int per_direction;  ///< particles per cell and direction
+  int cells_across;     ///< in each direction across the column
+  int cells_along;      ///< over its length
+  int per_direction;    ///< particles per cell and direction
+  int void_across = 1;  ///< layers of void cells beyond the faces across
+  int void_along = 1;   ///< the same beyond the end
 };
 
 template <int Dim>
@@ -45,17 +48,17 @@ int particle_count(const Size& size) {
   return n;
 }
 
+/// Particles, and what they are to go through.
 template <int Dim, class Real>
-struct Scene {
+struct Column {
   static constexpr double length = 10;     ///< m
   static constexpr double density = 1000;  ///< kg/m^3
-  static constexpr int axis = Dim - 1;     ///< the direction of the length; the lower end is at node 0
+  int axis = Dim - 1;                      ///< the direction of the length; the lower end is at node 0
   Size size;
   Load load;
   LinearBasis<Dim, Real> basis;
   ParticleBlock<Dim, Real, Device> block;
-  State<Dim, Real, Device> state;
-  std::vector<Body<Real>> bodies;
+  LinearElastic<Real> material;
   StepOptions<Dim, Real> options;
   double pressure;                                 ///< Pa, positive in compression
   UniformVirtualStress<Dim, Real> virtual_stress;  ///< -pressure I
@@ -66,6 +69,18 @@ struct Scene {
     for (int i = 1; i < Dim; ++i) area *= size.cells_across * spacing();
     return area;
   }
+  /// Whether the load's traction is declared at a node: everywhere, or at the end face and the layer of nodes
+  /// below it, which is N1 of a load on that face alone.
+  bool declared_at(const Vector<Dim, int>& node) const {
+    return load == Load::free_faces || (load == Load::end_face && node[axis] >= size.cells_along - 1);
+  }
+};
+
+/// The column and the state of the particle kernels.
+template <int Dim, class Real>
+struct Scene : Column<Dim, Real> {
+  State<Dim, Real, Device> state;
+  std::vector<Body<Real>> bodies;
 };
 
 /// Random numbers in [-1, 1), the same with every standard library.
@@ -78,25 +93,26 @@ class Noise {
 };
 
 template <int Dim, class Real>
-LinearBasis<Dim, Real> make_basis(const Size& size) {
-  const Real h = static_cast<Real>(Scene<Dim, Real>::length / size.cells_along);
+LinearBasis<Dim, Real> make_basis(const Size& size, int axis) {
+  const Real h = static_cast<Real>(Column<Dim, Real>::length / size.cells_along);
   Vector<Dim, Real> lower, spacing;
   Vector<Dim, int> cells;
   for (int i = 0; i < Dim; ++i) {
-    const bool along = i == Scene<Dim, Real>::axis;
-    lower[i] = along ? Real(0) : -h;
+    const bool along = i == axis;
+    lower[i] = along ? Real(0) : -static_cast<Real>(size.void_across) * h;
     spacing[i] = h;
-    cells[i] = along ? size.cells_along + 1 : size.cells_across + 2;
+    cells[i] = along ? size.cells_along + size.void_along : size.cells_across + 2 * size.void_across;
   }
   return {UniformGrid<Dim, Real>(lower, spacing, cells)};
 }
 
 /// Fills the particles; `strain` is the size of the random state, the strain of its stress.
 template <int Dim, class Real>
-void fill_particles(const Scene<Dim, Real>& scene, double strain, double youngs_modulus, double wave_speed) {
+void fill_particles(const Column<Dim, Real>& scene, double strain, double youngs_modulus, double wave_speed) {
   const auto host = host_copy(scene.block);
   const auto& p = host.particles;
-  const int across = scene.size.cells_across * scene.size.per_direction;
+  const int across = scene.size.cells_across * scene.size.per_direction,
+            along = scene.size.cells_along * scene.size.per_direction;
   const double distance = scene.spacing() / scene.size.per_direction, jitter = 0.3 * distance;
   double volume = 1;
   for (int i = 0; i < Dim; ++i) volume *= distance;
@@ -104,8 +120,8 @@ void fill_particles(const Scene<Dim, Real>& scene, double strain, double youngs_
   for (int n = 0; n < p.count(); ++n) {
     int k = n;
     for (int i = 0; i < Dim; ++i) {
-      const int place = i == scene.axis ? k : k % across;
-      k /= across;
+      const int extent = i == scene.axis ? along : across, place = k % extent;
+      k /= extent;
       p.position(n, i) = static_cast<Real>((place + 0.5) * distance + jitter * noise());
       p.velocity(n, i) = static_cast<Real>(strain * wave_speed * noise());
     }
@@ -117,18 +133,16 @@ void fill_particles(const Scene<Dim, Real>& scene, double strain, double youngs_
   Kokkos::deep_copy(scene.block.block, host.block);
 }
 
-/// Fixes the nodes of the lower end, and declares the traction where the load acts: at all nodes, or at the
-/// end face and the layer of nodes below it, which is N1 of a load on that face alone.
+/// Fixes the nodes of the lower end, and declares the traction where the load acts.
 template <int Dim, class Real>
 void fill_nodes(const Scene<Dim, Real>& scene) {
   const auto fixed = Kokkos::create_mirror_view(scene.state.nodes.fixed_components);
   const auto tractions = Kokkos::create_mirror_view(scene.state.occupancy.tractions);
   for (int node = 0; node < scene.basis.node_count(); ++node) {
     const auto I = static_cast<size_t>(node);
-    const int layer = scene.basis.grid.node_ijk(node)[scene.axis];
-    fixed(I) = layer == 0 ? ComponentMask((1 << Dim) - 1) : ComponentMask(0);
-    tractions(I) = scene.load == Load::free_faces ||
-                   (scene.load == Load::end_face && layer >= scene.size.cells_along - 1);
+    const auto at = scene.basis.grid.node_ijk(node);
+    fixed(I) = at[scene.axis] == 0 ? ComponentMask((1 << Dim) - 1) : ComponentMask(0);
+    tractions(I) = scene.declared_at(at);
   }
   Kokkos::deep_copy(scene.state.nodes.fixed_components, fixed);
   Kokkos::deep_copy(scene.state.occupancy.tractions, tractions);
@@ -144,27 +158,36 @@ void apply_load(Scene<Dim, Real>& scene, Load load) {
       mark_boundary_nodes(Exec(), scene.state.particles, o.cells, scene.basis, o.tractions, o.boundary);
 }
 
-/// The column at rest but for noise, with its occupancy up to date.
+/// The column at rest but for noise.
 template <int Dim, class Real>
-Scene<Dim, Real> make_scene(const Size& size, Load load, Scatter strategy) {
+Column<Dim, Real> make_column(const Size& size, Load load, int axis = Dim - 1) {
   const double E = 1e6, nu = 0.3;
-  const auto material = LinearElastic<Real>::from_young(E, nu);
-  const double M = static_cast<double>(material.constrained_modulus());
-  Scene<Dim, Real> s;
+  Column<Dim, Real> s;
+  s.axis = axis;
   s.size = size;
-  s.basis = make_basis<Dim, Real>(size);
+  s.load = load;
+  s.material = LinearElastic<Real>::from_young(E, nu);
+  const double M = static_cast<double>(s.material.constrained_modulus());
+  s.basis = make_basis<Dim, Real>(size, axis);
   s.block = allocate_particles<Dim, Real, Device>(particle_count<Dim>(size));
-  s.state = make_state(s.block.particles, s.basis);
-  s.bodies = {{0, particle_count<Dim>(size), material}};
   const double strain = 1e-3 * s.spacing() / s.length;  // moves the free end by 0.001 cells
   s.pressure = strain * E;
   s.options.dt = static_cast<Real>(time_step(0.2, s.spacing(), M, s.density));
   s.options.damping = Real(0.05);
   s.options.gravity[s.axis] = static_cast<Real>(-strain * E / (s.density * s.length));
-  s.options.scatter = strategy;
   s.virtual_stress.stress[0] = pressure_stress<Dim>(static_cast<Real>(s.pressure));
   s.virtual_stress.count = 1;
   fill_particles(s, strain, E, math::sqrt(M / s.density));
+  return s;
+}
+
+/// The column with its occupancy up to date.
+template <int Dim, class Real>
+Scene<Dim, Real> make_scene(const Size& size, Load load, Scatter strategy, int axis = Dim - 1) {
+  Scene<Dim, Real> s{make_column<Dim, Real>(size, load, axis), {}, {}};
+  s.options.scatter = strategy;
+  s.state = make_state(s.block.particles, s.basis);
+  s.bodies = {{0, particle_count<Dim>(size), s.material}};
   update_occupancy(Exec(), s.state.particles, s.state.occupancy, s.basis);
   apply_load(s, load);
   return s;
@@ -172,7 +195,7 @@ Scene<Dim, Real> make_scene(const Size& size, Load load, Scatter strategy) {
 
 /// Calls work(field) with the virtual stress field of the scene's load.
 template <int Dim, class Real, class Work>
-auto with_field(const Scene<Dim, Real>& scene, const Work& work) {
+auto with_field(const Column<Dim, Real>& scene, const Work& work) {
   return scene.load == Load::off ? work(NoVirtualStress{}) : work(scene.virtual_stress);
 }
 

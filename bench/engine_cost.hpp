@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// What a step on cell lanes costs, and what the virtual stress adds.
+#pragma once
+
+#include "cost_cases.hpp"
+#include "cost_record.hpp"
+#include "lane_checks.hpp"
+#include "rounds.hpp"
+
+#include <vsb/physics/traction_fields.hpp>
+
+namespace vsb::bench {
+
+/// The fields that are compared, all as small as the column's pressure.
+template <class Real>
+struct CostFields {
+  UniformVirtualStress<3, Real> pressure, tensor;
+  TractionFields<3, Real> affine, function;
+
+  explicit CostFields(const Column<3, Real>& column) {
+    const Real p = static_cast<Real>(column.pressure), length = static_cast<Real>(column.length);
+    pressure = tensor = column.virtual_stress;
+    for (int c = 0; c < 6; ++c) tensor.stress[0][c] = p * (c < 3 ? Real(-1) : Real(0.25));
+    AffineStress<3, Real> hydrostatic{pressure_stress<3>(p), {}};
+    for (auto& g : hydrostatic.gradient) g = SymmetricTensor<3, Real>::zero();
+    hydrostatic.gradient[column.axis] = pressure_stress<3>(-p / length);
+    affine.count = function.count = 1;
+    affine.factor[0] = function.factor[0] = 1;
+    affine.field[0] = hydrostatic;
+    RadialBlend<3, Real> blend;
+    for (int i = 0; i < 3; ++i) {
+      blend.center[i] = 0;
+      blend.across[i] = i == column.axis ? Real(0) : Real(1);
+    }
+    blend.inner_radius = length / 100;
+    blend.outer_radius = length;
+    blend.inner = pressure_stress<3>(p);
+    blend.outer = SymmetricTensor<3, Real>::zero();
+    function.field[0] = blend;
+  }
+};
+
+/// Marks anew, one word of N1 having changed: what an occupancy that changes costs beside the sums.
+template <class Real>
+void mark_anew(Lane<3, Real>& s) {
+  auto& b = s.boundary;
+  if constexpr (std::is_same<typename Device::memory_space, Kokkos::HostSpace>::value)
+    b.marked(b.marked.extent(0) / 2, 0) ^= 1;
+  update_occupied(Exec(), s.memory.lanes, b);
+  mark_lanes(Exec(), s.memory.lanes, s.memory.grid.cells, b, false);
+}
+
+/// Base and the fields against it, with the traction where the column has it.
+template <class Real>
+Rounds measure_fields(const Column<3, Real>& column, Lane<3, Real>& s, int rounds) {
+  const CostFields<Real> fields(column);
+  std::vector<Variant> variants;
+  const auto add = [&](const std::string& name, const auto& field) {
+    variants.push_back({name, [&] { step(column, s, field); }});
+    variants.push_back({name + ", marked", [&] {
+                          step(column, s, field);
+                          mark_anew(s);
+                        }});
+  };
+  add("pressure", fields.pressure);
+  variants.push_back({"pressure, marked, summed anew", [&] {
+                        step(column, s, fields.pressure);
+                        mark_anew(s);
+                        detail::sum_lanes(Exec(), s, fields.pressure);
+                      }});
+  add("tensor", fields.tensor);
+  add("affine", fields.affine);
+  add("function", fields.function);
+  return measure_in_turns({"base", [&] { step(column, s, NoVirtualStress{}); }}, variants, rounds);
+}
+
+/// Adds the extras to the record, in percent and in ns per particle.
+inline void add_extras(Record& record, const std::string& where, const Rounds& found, int particles) {
+  for (const auto& extra : found.extras) {
+    record.set(where + ": " + extra.name + " %", extra.percent);
+    record.set(where + ": " + extra.name + " ns", 1e9 * extra.seconds / particles);
+  }
+}
+
+/// The column on lanes, checked, and in the record what memory it took per particle.
+template <class Real>
+Lane<3, Real> make_measured_lanes(Column<3, Real>& column, const CostCase& what, int axis, Record& record) {
+  const double start = resident_bytes();
+  reset_peak();
+  column = make_column<3, Real>(what.size, Load::free_faces, axis);
+  const int particles = particle_count<3>(what.size);
+  auto s = make_lanes(column);
+  prepare_lane_step(Exec(), s, column.virtual_stress);
+  step(column, s, column.virtual_stress);
+  record.set("peak bytes", (peak_bytes() - start) / particles);
+  column.block = {};
+  reset_peak();
+  for (int n = 0; n < 3; ++n) step(column, s, column.virtual_stress);
+  record.set("stepping bytes", (peak_bytes() - start) / particles);
+  record.set("state bytes", state_bytes(s) / particles);
+  const auto findings = check_lane_step(column, s, [&] { step(column, s, column.virtual_stress); });
+  if (!findings.empty()) throw std::runtime_error(what.name + ": " + findings);
+  return s;
+}
+
+/// The row of a case in the table.
+template <class Real>
+void measure_engine(const CostCase& what, int axis, int repeats, Record& record) {
+  Column<3, Real> column;
+  auto s = make_measured_lanes(column, what, axis, record);
+  const int particles = particle_count<3>(what.size);
+  std::vector<double> base;
+  for (const Load load : {Load::end_face, Load::free_faces}) {
+    column.load = load;
+    apply_load(column, s);
+    const auto found = measure_fields(column, s, rounds_for(what.size, repeats));
+    add_extras(record, load == Load::end_face ? "end face" : "all faces", found, particles);
+    base.insert(base.end(), found.base.begin(), found.base.end());
+  }
+  record.set("base ns", 1e9 * median(base) / particles);
+  record.set("base 10 % ns", 1e9 * quantile(base, 0.1) / particles);
+}
+
+/// The base alone, for the speed-up by threads: wall time.
+template <class Real>
+void measure_base(const CostCase& what, int axis, int repeats, Record& record) {
+  Column<3, Real> column;
+  auto s = make_measured_lanes(column, what, axis, record);
+  std::vector<double> wall;
+  const auto seconds = [] {
+    timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+  };
+  for (int round = 0; round < 8 * rounds_for(what.size, repeats); ++round) {
+    const double start = seconds();
+    step(column, s, NoVirtualStress{});
+    Kokkos::fence();
+    wall.push_back(seconds() - start);
+  }
+  record.set("wall ns", 1e9 * median(wall) / particle_count<3>(what.size));
+  record.set("wall 10 % ns", 1e9 * quantile(wall, 0.1) / particle_count<3>(what.size));
+}
+
+}  // namespace vsb::bench
