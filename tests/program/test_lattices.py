@@ -258,7 +258,8 @@ class FillCriterion(LatticeTest):
     def test_off_by_default_and_no_effect_where_all_cells_are_full(self):
         block = "{ box = { lower = [0.0, 0.0], upper = [2.0, 2.0] } }"
         hashes = set()
-        for method in ("", "[method]\nfill_criterion = 0.0", "[method]\nfill_criterion = 0.5"):
+        for criterion in ("", "fill_criterion = 0.0", "fill_criterion = 0.5"):
+            method = "[method]\nengine = \"particles\"\n" + criterion
             path = self.scene(block, "particles_per_cell = 2", more="[[traction]]\npressure = 1e3\n" + method,
                               time="kappa = 0.5\nsteps = 50")
             hashes.add(self.run_scene(path, out="s")["state_hash"])
