@@ -96,7 +96,8 @@ void make_more_room(LaneState<Dim, Real, Device>& s) {
 }
 
 /// Sums up for the first step, or anew after a change of loads; `virtual_stress` is the field at the end of
-/// the step to come.
+/// the step to come. After steps without any field, or other declarations, mark_packed_lanes must come first:
+/// without a field, steps do not keep up the boundary.
 template <class Exec, class Field, int Dim, class Real, class Device>
 void prepare_lane_step(const Exec& exec, const LaneState<Dim, Real, Device>& s, const Field& virtual_stress) {
   detail::sum_lanes(exec, s, virtual_stress);

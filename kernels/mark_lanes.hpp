@@ -22,7 +22,6 @@ struct LaneBoundary {
   TractionMask everywhere = 0;         ///< tractions declared at all nodes
   BoundaryNodes<Device> declared;      ///< [node of the grid]: tractions declared at some; may be empty
   TractionMask conservative = 0;       ///< those that act at all active nodes
-  int count = 0;                       ///< nodes at which a traction acts
 };
 
 namespace kernel {

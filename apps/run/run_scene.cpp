@@ -200,8 +200,8 @@ void check_scene(const Scene& scene) {
   const double loaded = std::isfinite(settled) ? settled : 0.0;
   if (!scene.tractions.empty()) fmt::print("# initial state under the loads at {:.6g} s:\n", loaded);
   print_resultant(scene, simulation->balance_under_loads_at(loaded), "#   ");
-  // The rate is measured: a few steps of the scene itself, the first one (which sorts) left out. Not more than
-  // a hundred: what a scene does in the long run, such as fly away, is not the question here.
+  // The rate is measured: a few steps of the scene itself, the first one (which sorts) left out. Not more
+  // than a hundred: what a scene does in the long run, such as fly away, is not the question here.
   simulation->advance(1);
   const auto begin = Clock::now();
   long long made = 0;

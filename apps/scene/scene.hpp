@@ -97,7 +97,7 @@ struct MethodSpec {
   std::array<double, 3> gimp_half_width{};  ///< of a particle, per direction, in cells; of uGIMP
   double damping = 0;
   std::string volume_update, scatter;
-  std::string engine;  ///< auto, cell_lanes or particles, see run/lane_engine.hpp
+  std::string engine;         ///< auto, cell_lanes or particles, see run/lane_engine.hpp
   int cell_gauss_points = 1;  ///< of the original virtual stress boundary method, per direction
   double fill_criterion = 0;  ///< tau, see kernels/mark_underfilled_cells.hpp; 0: off
   bool void_filter = false;   ///< see kernels/filter_voids.hpp
