@@ -16,7 +16,8 @@ namespace vsb::bench {
 template <class Real>
 struct CostFields {
   UniformVirtualStress<3, Real> pressure, tensor;
-  TractionFields<3, Real> affine, function;
+  AffineVirtualStress<3, Real> affine;
+  TractionFields<3, Real> function;
 
   explicit CostFields(const Column<3, Real>& column) {
     const Real p = static_cast<Real>(column.pressure), length = static_cast<Real>(column.length);

@@ -37,7 +37,9 @@ struct Packed {
       Kokkos::parallel_for(
           "vsb::move_lanes", detail::over_layers(Exec(), lanes),
           kernel::MoveLanes<true, Field, LinearElastic<Real>, DeterminantVolume, Dim, Real, Device>{
-              detail::loaded_lanes(lanes), m.nodes, field, column.material, {}, m.leavers});
+              detail::loaded_lanes(lanes),
+              {m.lanes, m.nodes, m.grid, column.material, {}, m.leavers},
+              field});
     });
   }
   Kokkos::RangePolicy<Exec> over_chunks() const {

@@ -52,13 +52,14 @@ OverLayers<Exec> over_layers(const Exec& exec, const LaneState<Dim, Real, Device
   return OverLayers<Exec>(exec, 0, s.memory.lanes.layers(), Kokkos::ChunkSize(1));
 }
 
-/// Sweep A alone.
+/// Sweep A alone, of all layers or of some.
 template <class Exec, class Field, int Dim, class Real, class Device>
-void sum_lanes(const Exec& exec, const LaneState<Dim, Real, Device>& s, const Field& field) {
+void sum_lanes(const Exec& exec, const LaneState<Dim, Real, Device>& s, const Field& field,
+               const Kokkos::View<int*, Device>& only = {}) {
   with_cubic(s, [&](auto cubic) {
     Kokkos::parallel_for("vsb::sum_lanes", over_layers(exec, s),
                          kernel::SumLanes<decltype(cubic)::value, Field, Dim, Real, Device>{
-                             loaded_lanes(s), s.memory.nodes, field});
+                             loaded_lanes(s), s.memory.nodes, field, only});
   });
 }
 
@@ -141,12 +142,12 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
     detail::sum_lanes(exec, s, next_virtual_stress);
     return -1;
   }
-  bool marked = false;
-  if (update_occupied(exec, m.lanes, s.boundary) && Field::loaded) {
-    mark_lanes(exec, m.lanes, m.grid.cells, s.boundary, false);
-    marked = true;
-  }
-  if (marked || !one_by_one) detail::sum_lanes(exec, s, next_virtual_stress);
+  const bool marked = update_occupied(exec, m.lanes, s.boundary) && Field::loaded;
+  if (marked) mark_lanes(exec, m.lanes, m.grid.cells, s.boundary, false);
+  if (!one_by_one)
+    detail::sum_lanes(exec, s, next_virtual_stress);
+  else if (marked)
+    detail::sum_lanes(exec, s, next_virtual_stress, s.boundary.stale);
   return -1;
 }
 

@@ -24,8 +24,10 @@ struct SumLanes {
   LoadedLanes<Dim, Real, Device> on;
   LaneNodes<Dim, Real, Device> nodes;
   Field virtual_stress;
+  Kokkos::View<int*, Device> only;  ///< [layer]: 0 for those to leave alone; empty: none
 
   KOKKOS_FUNCTION void operator()(int layer) const {
+    if (only.size() > 0 && only(layer) == 0) return;
     StepSums<Dim, Real, Device> sums(on.lanes, nodes, layer);
     for (int g = on.lanes.layer_first(layer); g < on.lanes.layer_first(layer + 1); ++g) {
       const auto& group = on.lanes.groups(g);

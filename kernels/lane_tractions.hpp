@@ -4,12 +4,13 @@
 /// where a traction acts its virtual stress (Eqs. 27, 28), sum_p V_p (sbar . grad N_a + fbar N_a).
 ///
 /// A uniform sbar needs only the volume moments sum_p V_p q_k; where a cell has all its nodes loaded or none,
-/// not even these: sigma - sbar takes the place of sigma. Any other field is evaluated at the particles.
+/// not even these: sigma - sbar takes the place of sigma. An affine sbar needs those with one direction
+/// squared too. Any other field is evaluated at the particles.
 #pragma once
 
 #include <vsb/kernels/lane_sums.hpp>
+#include <vsb/physics/stress_fields.hpp>
 #include <vsb/physics/uniform_grid.hpp>
-#include <vsb/physics/virtual_stress.hpp>
 
 namespace vsb {
 
@@ -79,6 +80,38 @@ KOKKOS_FORCEINLINE_FUNCTION void add_uniform(const SymmetricTensor<Dim, Real>& b
       nodes_from_moments<Dim>(t);
       add_where<Dim>(bits, t, f[a]);
     }
+  });
+}
+
+/// sum_p V_p (sbar(x_p) . grad N_a + fbar N_a) of an affine field from the second moments of the volume,
+/// where bits are set.
+template <int Dim, class P, class Real, class Device>
+KOKKOS_FORCEINLINE_FUNCTION void add_affine(const LoadedLanes<Dim, Real, Device>& on,
+                                            const LaneGroup<Dim>& group, const AffineStress<Dim, Real>& bar,
+                                            const SecondMoments<Dim, P>& volume, const std::uint64_t* bits,
+                                            CellPolynomial<Dim, P> (&f)[Dim]) {
+  const auto& grid = on.grid;
+  // sbar at the lower corner of every lane's cell.
+  const auto corner = grid.map(on.lanes.cell(group, 0), Vector<Dim, Real>::zero()).x;
+  P along_x;
+  for (int l = 0; l < P::width; ++l) along_x.set(l, static_cast<Real>(l) * grid.spacing[0]);
+  const auto first = bar.at(corner).stress;
+  static_for<Dim>([&](auto a) VSB_UNROLLED {
+    Vector<Dim, P> b;
+    Matrix<Dim, P> d;
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
+      constexpr int c = symmetric_index(a, i);
+      b[i] = (P(first[c]) + P(bar.gradient[0][c]) * along_x) * P(grid.inverse_spacing[i]);
+      static_for<Dim>([&](auto j) VSB_UNROLLED {
+        d(i, j) = P(bar.gradient[j][c] * grid.spacing[j] * grid.inverse_spacing[i]);
+      });
+    });
+    auto t = gradient_moments<Dim>(b, d, volume);
+    Real divergence = 0;
+    for (int j = 0; j < Dim; ++j) divergence += bar.gradient[j](a, j);
+    static_for<t.size>([&](auto k) VSB_UNROLLED { t[k] += P(divergence) * volume.m[k]; });
+    nodes_from_moments<Dim>(t);
+    add_where<Dim>(bits, t, f[a]);
   });
 }
 
@@ -158,6 +191,14 @@ template <bool Cubic, class Field, int Dim, class Real, class Device>
     for_each_mask(on, group, [&](TractionMask tractions, const std::uint64_t* bits) {
       add_uniform(field.at(Vector<Dim, Real>::zero(), tractions).stress, on.grid.inverse_spacing, volume,
                   bits, f);
+    });
+  } else if constexpr (Field::affine) {
+    SecondMoments<Dim, P> volume;
+    volume.set_zero();
+    for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width)
+      volume.add(lanes.load(lanes.volume_column, entry), lanes.load_xi(entry));
+    for_each_mask(on, group, [&](TractionMask tractions, const std::uint64_t* bits) {
+      add_affine(on, group, field.sum(tractions), volume, bits, f);
     });
   } else {
     for_each_mask(on, group, [&](TractionMask tractions, const std::uint64_t* bits) {

@@ -18,6 +18,7 @@ struct LaneBoundary {
   CellBits<Device> bits;               ///< of the box; bits.occupied is kept up to date by every sweep
   Rows marked, active;                 ///< [row of nodes of the box][word]: N1, and nodes with mass
   Kokkos::View<int*, Device> changed;  ///< [row of nodes]: 1 where tractions changed
+  Kokkos::View<int*, Device> stale;    ///< [layer]: 1 where the load of a group changed with the last marking
   BoundaryNodes<Device> tractions;     ///< [node of the lanes]: those that act there
   TractionMask everywhere = 0;         ///< tractions declared at all nodes
   BoundaryNodes<Device> declared;      ///< [node of the grid]: tractions declared at some; may be empty
@@ -118,6 +119,7 @@ struct LoadGroup {
     bool changed = false;
     for (int r = 0; r < rows; ++r) changed = changed || boundary.changed(lanes.node_row(group.row, r)) != 0;
     if (!changed) return;
+    const auto before = group;
     TractionMask common = 0;
     bool same = true;
     std::uint64_t all = ~std::uint64_t(0), any = 0;
@@ -140,6 +142,10 @@ struct LoadGroup {
                  : !same                          ? GroupLoad::mixed
                  : (all & cells) == (any & cells) ? GroupLoad::whole
                                                   : GroupLoad::part;
+    bool other =
+        group.load == GroupLoad::mixed || group.load != before.load || group.tractions != before.tractions;
+    for (int r = 0; r < rows; ++r) other = other || group.loaded[r] != before.loaded[r];
+    if (other) boundary.stale(group.row / lanes.rows_per_layer()) = 1;
   }
 };
 
@@ -170,6 +176,7 @@ void fit_boundary(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes, L
     b.marked = Rows("vsb::box_marked", node_rows, words);
     b.active = Rows("vsb::box_active", node_rows, words);
     b.changed = decltype(b.changed)("vsb::box_changed", node_rows);
+    b.stale = decltype(b.stale)("vsb::stale_layers", static_cast<size_t>(lanes.layers()));
   }
   if (b.tractions.extent(0) < nodes)
     b.tractions = BoundaryNodes<Device>("vsb::lane_tractions", nodes + nodes / 16);
@@ -205,6 +212,7 @@ void mark_lanes(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes,
                        kernel::FindBoundary<Dim, Device>{b.bits, tiling});
   Kokkos::parallel_for("vsb::mark_lane_nodes", Kokkos::RangePolicy<Exec>(exec, 0, tiling.node_row_count()),
                        kernel::MarkLaneNodes<Dim, Real, Device>{lanes, b, tiling, grid_cells, anew});
+  Kokkos::deep_copy(exec, b.stale, 0);
   Kokkos::parallel_for("vsb::load_groups", Kokkos::RangePolicy<Exec>(exec, 0, lanes.group_count),
                        kernel::LoadGroup<Dim, Real, Device>{lanes, b});
 }

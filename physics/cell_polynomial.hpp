@@ -146,4 +146,57 @@ KOKKOS_FORCEINLINE_FUNCTION CellPolynomial<Dim, T> gradient_moments_along(T c,
   return g;
 }
 
+/// The moments of a weight with the monomials, and with one direction squared: m[k] of q_k, square[j][k] of
+/// xi_j^2 q_k, k without j and of at most Dim - 2 directions. A weight that varies linearly needs no more.
+template <int Dim, class T>
+struct SecondMoments {
+  CellPolynomial<Dim, T> m, square[Dim];
+
+  KOKKOS_FORCEINLINE_FUNCTION void set_zero() {
+    static_for<(1 << Dim)>([&](auto k) VSB_UNROLLED {
+      m[k] = T(0);
+      static_for<Dim>([&](auto j) VSB_UNROLLED { square[j][k] = T(0); });
+    });
+  }
+  KOKKOS_FORCEINLINE_FUNCTION void add(T w, const Vector<Dim, T>& xi) {
+    add_moments<Dim>(m, w, xi);
+    if constexpr (Dim > 1) {
+      static_for<Dim>([&](auto j) VSB_UNROLLED {
+        const T wjj = w * xi[j] * xi[j];
+        square[j][0] += wjj;
+        static_for<Dim>([&](auto i) VSB_UNROLLED {
+          if constexpr (Dim > 2 && i != j) square[j][1 << i] += wjj * xi[i];
+        });
+      });
+    }
+  }
+  /// The moment of xi_j q_k.
+  template <int j, int k>
+  KOKKOS_FORCEINLINE_FUNCTION const T& times() const {
+    if constexpr (k >> j & 1)
+      return square[j][k ^ (1 << j)];
+    else
+      return m[k | (1 << j)];
+  }
+};
+
+/// The moments sum_p w_p (s(xi_p) . grad q_k) of s_i = b_i + sum_j d_ij xi_j.
+template <int Dim, class T>
+KOKKOS_FORCEINLINE_FUNCTION CellPolynomial<Dim, T> gradient_moments(const Vector<Dim, T>& b,
+                                                                    const Matrix<Dim, T>& d,
+                                                                    const SecondMoments<Dim, T>& w) {
+  CellPolynomial<Dim, T> g;
+  static_for<(1 << Dim)>([&](auto k) VSB_UNROLLED {
+    g[k] = T(0);
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
+      if constexpr (k >> i & 1) {
+        constexpr int rest = k ^ (1 << i);
+        g[k] += b[i] * w.m[rest];
+        static_for<Dim>([&](auto j) VSB_UNROLLED { g[k] += d(i, j) * w.template times<j, rest>(); });
+      }
+    });
+  });
+  return g;
+}
+
 }  // namespace vsb

@@ -26,6 +26,15 @@ class StressField {
   KOKKOS_FUNCTION StressField(const PlanarBlend<Dim, Real>& f) : kind_(Kind::planar), planar_(f) {}
   KOKKOS_FUNCTION StressField(const Ellipse& f) : kind_(Kind::ellipse), ellipse_(f) {}
 
+  /// Whether the field is affine in x, and then the field.
+  bool is_affine() const { return kind_ == Kind::uniform || kind_ == Kind::affine; }
+  AffineStress<Dim, Real> as_affine() const {
+    if (kind_ == Kind::affine) return affine_;
+    AffineStress<Dim, Real> constant{uniform_.stress, {}};
+    for (int j = 0; j < Dim; ++j) constant.gradient[j] = SymmetricTensor<Dim, Real>::zero();
+    return constant;
+  }
+
   KOKKOS_FUNCTION VirtualStressValue<Dim, Real> at(const Vector<Dim, Real>& x) const {
     switch (kind_) {
       case Kind::affine:
@@ -92,6 +101,31 @@ struct TractionFields : ActsOnParticles {
     }
     if (mask & balanced) sum.divergence += balance.at(x);
     return sum;
+  }
+};
+
+/// Affine stress fields, one per traction; tractions add up where their surfaces overlap.
+template <int Dim, class Real>
+struct AffineVirtualStress : ActsOnParticles {
+  static constexpr bool affine = true;
+  static constexpr int capacity = UniformVirtualStress<Dim, Real>::capacity;
+  AffineStress<Dim, Real> field[capacity];
+  Real factor[capacity];  ///< on the field of traction k, at this time
+  int count = 0;
+
+  KOKKOS_FUNCTION AffineStress<Dim, Real> sum(TractionMask mask) const {
+    AffineStress<Dim, Real> total;
+    total.value = SymmetricTensor<Dim, Real>::zero();
+    for (int j = 0; j < Dim; ++j) total.gradient[j] = total.value;
+    for (int k = 0; k < count; ++k) {
+      if (!(mask >> k & 1u)) continue;
+      total.value += factor[k] * field[k].value;
+      for (int j = 0; j < Dim; ++j) total.gradient[j] += factor[k] * field[k].gradient[j];
+    }
+    return total;
+  }
+  KOKKOS_FUNCTION VirtualStressValue<Dim, Real> at(const Vector<Dim, Real>& x, TractionMask mask) const {
+    return sum(mask).at(x);
   }
 };
 

@@ -5,10 +5,11 @@
 /// is sbar = -p I.
 ///
 /// What a kernel asks of a field: `loaded` (whether particles have anything to add), `uniform` (whether it is
-/// the same everywhere), `cell_quadrature` (whether whole cells have anything to add), acting_at(x), the
-/// tractions that may act on a particle at x, and at(x, mask), the sum over the tractions in the mask of
-/// their fields at x. A kernel calls it where a node's mask differs from that of the node before it, so that
-/// a field that differs from surface to surface switches node by node.
+/// the same everywhere), `affine` (whether it is affine in x; then sum(mask) gives it), `cell_quadrature`
+/// (whether whole cells have anything to add), acting_at(x), the tractions that may act on a particle at x,
+/// and at(x, mask), the sum over the tractions in the mask of their fields at x. A kernel calls it where a
+/// node's mask differs from that of the node before it, so that a field that differs from surface to surface
+/// switches node by node.
 #pragma once
 
 #include <vsb/views/masks.hpp>
@@ -29,7 +30,7 @@ struct VirtualStressValue {
 
 /// What most fields have in common: they act on particles, and on all of them.
 struct ActsOnParticles {
-  static constexpr bool loaded = true, uniform = false, cell_quadrature = false;
+  static constexpr bool loaded = true, uniform = false, affine = false, cell_quadrature = false;
   template <class Position>
   KOKKOS_FUNCTION TractionMask acting_at(const Position&) const {
     return ~TractionMask(0);

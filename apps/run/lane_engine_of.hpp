@@ -11,19 +11,6 @@ namespace vsb::app {
 
 namespace detail {
 
-/// Calls work(field) with the field of the loads; all that have nothing to add to particles are the same.
-template <int Dim, class Real, class Work>
-void with_lane_field(const Loads<Dim, Real>& loads, const UniformGrid<Dim, Real>& grid, const Work& work) {
-  loads.template with_field<false>(grid, CellBits<typename LaneEngine<Dim, Real>::Device>{},
-                                   [&](const auto& field) {
-                                     if constexpr (std::decay_t<decltype(field)>::loaded)
-                                       work(field);
-                                     else
-                                       work(NoVirtualStress{});
-                                     return 0;
-                                   });
-}
-
 /// Bytes behind a row of fields, each with its length.
 class Writer {
  public:
@@ -91,15 +78,14 @@ LaneEngine<Dim, Real>::LaneEngine(const Setup& setup, const Particles<Dim, Real,
 
 template <int Dim, class Real>
 void LaneEngine<Dim, Real>::prepare(const Loads<Dim, Real>& loads) {
-  detail::with_lane_field(loads, setup_.grid,
-                          [&](const auto& field) { prepare_lane_step(exec_, state_, field); });
+  loads.with_lane_field([&](const auto& field) { prepare_lane_step(exec_, state_, field); });
   prepared_ = true;
 }
 
 template <int Dim, class Real>
 int LaneEngine<Dim, Real>::step(const Loads<Dim, Real>& next) {
   int lost = -1;
-  detail::with_lane_field(next, setup_.grid, [&](const auto& field) {
+  next.with_lane_field([&](const auto& field) {
     std::visit(
         [&](const auto& material, const auto& volume) {
           lost = lane_step(exec_, state_, material, volume, field, setup_.options);

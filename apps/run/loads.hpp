@@ -63,6 +63,7 @@ class Loads {
       if (!std::holds_alternative<Stress6>(traction.field)) {
         fields_.field[k] = stress_field<Dim, Real>(scene, traction.field);
         all_uniform_ = false;
+        all_affine_ = all_affine_ && fields_.field[k].is_affine();
       }
       if (traction.all_nodes) conservative_ |= TractionMask(1) << k;
       if (traction.self_balanced) balanced_ |= TractionMask(1) << k;
@@ -113,10 +114,26 @@ class Loads {
     return all_uniform_ ? work(uniform_) : work(fields_);
   }
 
+  /// Calls work(field) with the field as the cell lanes take it: by the virtual stress of particles alone,
+  /// and as an affine one where it is.
+  template <class Work>
+  void with_lane_field(const Work& work) const {
+    if (on_nodes_ == 0) return work(NoVirtualStress{});
+    if (all_uniform_) return work(uniform_);
+    if (!all_affine_) return work(fields_);
+    AffineVirtualStress<Dim, Real> affine;
+    affine.count = fields_.count;
+    for (int k = 0; k < affine.count; ++k) {
+      affine.field[k] = fields_.field[k].as_affine();
+      affine.factor[k] = fields_.factor[k];
+    }
+    work(affine);
+  }
+
  private:
   TractionMask on_nodes_, original_, conservative_ = 0, balanced_ = 0;
   int gauss_points_;
-  bool all_uniform_ = true;
+  bool all_uniform_ = true, all_affine_ = true;
   UniformVirtualStress<Dim, Real> uniform_{};
   TractionFields<Dim, Real> fields_{};
 };

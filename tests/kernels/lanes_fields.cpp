@@ -92,6 +92,43 @@ TEMPLATE_TEST_CASE_SIG("fields of all kinds, other ones from node to node", "",
   }
 }
 
+TEMPLATE_TEST_CASE_SIG("affine fields, by the volume's second moments", "",
+                       ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (3, double),
+                       (2, float)) {
+  for (const bool mixed : {false, true}) {
+    BothEngines<Dim, Real> engines({!mixed, sizeof(Real) == 4 ? 0. : 1.5});
+    const auto kinds = four_fields<Dim, Real>(engines.basis.grid, engines.amplitude);
+    AffineVirtualStress<Dim, Real> f;
+    f.count = 3;
+    f.field[0] = kinds.field[0].as_affine();
+    f.field[1] = kinds.field[3].as_affine();
+    f.field[2] = kinds.field[0].as_affine();
+    f.field[2].value *= Real(-2);
+    for (int k = 0; k < Dim; ++k) f.field[2].gradient[k][0] += Real(0.3);
+    for (int k = 0; k < 3; ++k) f.factor[k] = kinds.factor[k];
+    REQUIRE((kinds.field[0].is_affine() && kinds.field[3].is_affine() && !kinds.field[1].is_affine()));
+    if (mixed) {
+      engines.declare([](const Vector<Dim, int>& ijk) {
+        TractionMask mask = 0;
+        for (int i = 0; i < Dim; ++i) mask |= 1u << ((ijk[i] + i) / 2 % 4);  // bit 3: no field has it
+        return mask;
+      });
+      engines.conservative = 2;
+    } else {
+      engines.declare_everywhere(7);
+    }
+    engines.run(elastic<Dim, Real>(), DeterminantVolume{}, [&](int n) {
+      auto now = f;
+      for (int k = 0; k < 3; ++k) now.factor[k] *= static_cast<Real>(0.01 * n);
+      return now;
+    });
+    CAPTURE(mixed, engines.moved);
+    check_same(engines);
+    engines.check_boundary();
+    CHECK(engines.load_seen[static_cast<int>(GroupLoad::mixed)] == mixed);
+  }
+}
+
 TEMPLATE_TEST_CASE_SIG("a rigid body force that balances a field", "", ((int Dim), Dim), 2, 3) {
   BothEngines<Dim, double> engines({true, 0});
   auto f = four_fields<Dim, double>(engines.basis.grid, 1);

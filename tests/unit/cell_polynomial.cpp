@@ -157,3 +157,38 @@ TEMPLATE_TEST_CASE_SIG("sums over particles at the nodes from moments", "", ((in
     }
   }
 }
+
+TEMPLATE_TEST_CASE_SIG("a field that varies linearly, from second moments", "",
+                       ((int Dim, typename T), Dim, T), (1, double), (2, double), (3, double),
+                       (2, (Pack<double, 4>)), (3, (Pack<float, 8>))) {
+  Random random(5);
+  const double epsilon = std::numeric_limits<typename Traits<T>::real>::epsilon();
+  const auto b = draw_vector<Dim, T>(random, -1, 1);
+  Matrix<Dim, T> d;
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j) d(i, j) = Traits<T>::draw(random, -1, 1);
+  SecondMoments<Dim, T> moments;
+  moments.set_zero();
+  double expected[8][1 << Dim] = {};
+  for (int p = 0; p < 20; ++p) {
+    const auto xi = draw_vector<Dim, T>(random, 0, 1);
+    const T w = Traits<T>::draw(random, 0.5, 1.5);
+    moments.add(w, xi);
+    for (int l = 0; l < Traits<T>::width; ++l) {
+      const Basis<Dim> at(xi, l);
+      for (int a = 0; a < 1 << Dim; ++a)
+        for (int i = 0; i < Dim; ++i) {
+          double s = lane(b[i], l);
+          for (int j = 0; j < Dim; ++j) s += lane(d(i, j), l) * lane(xi[j], l);
+          expected[l][a] += lane(w, l) * s * at.dN[a][i];
+        }
+    }
+  }
+  auto sum = gradient_moments<Dim>(b, d, moments);
+  nodes_from_moments<Dim>(sum);
+  for (int l = 0; l < Traits<T>::width; ++l)
+    for (int a = 0; a < 1 << Dim; ++a) {
+      CAPTURE(l, a);
+      CHECK(std::abs(lane(sum[a], l) - expected[l][a]) < 500 * epsilon);
+    }
+}
