@@ -55,7 +55,6 @@ template <int Dim, class Real, class Device>
 struct CellLanes {
   static constexpr int width = Lanes<Real>::width;
   static constexpr int stress_size = symmetric_components(Dim);
-  static constexpr int rows_of_corners = LaneGroup<Dim>::corner_rows;
   using P = typename Lanes<Real>::Pack;
   using Columns = Kokkos::View<Real**, Kokkos::LayoutLeft, Device>;
   using Ints = Kokkos::View<int*, Device>;
@@ -152,10 +151,10 @@ struct LaneNodes {
                        remapped_column = displacement_column + Dim,
                        inverse_mass_column = remapped_column + Dim, column_count = inverse_mass_column + 1;
   using P = typename Lanes<Real>::Pack;
-  Kokkos::View<Real**, Kokkos::LayoutLeft, Device> data;  ///< [node][column]: lower and upper sums of mass,
-                                                          ///< momentum, force; dt a; dt v in cells; dt v* in
-                                                          ///< m; 1 / m
-  Kokkos::View<std::uint32_t* [Dim], Device> fixed;       ///< [chunk][component]: bit l: prescribed in lane l
+  Kokkos::View<Real**, Kokkos::LayoutLeft, Device> data;  ///< [node][column]: lower and upper sums of mass in
+                                                          ///< kg, momentum in kg m/s and force in N; dt a in
+                                                          ///< m/s; dt v and dt v* in cells; 1 / m
+  Kokkos::View<std::uint32_t* [Dim], Device> fixed;  ///< [chunk][component]: bit l: prescribed in lane l
 
   KOKKOS_FORCEINLINE_FUNCTION Real* at(int column, int node) const {
     return data.data() + static_cast<size_t>(column) * data.stride(1) + node;
