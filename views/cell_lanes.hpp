@@ -154,7 +154,7 @@ struct LaneNodes {
   Kokkos::View<Real**, Kokkos::LayoutLeft, Device> data;  ///< [node][column]: lower and upper sums of mass in
                                                           ///< kg, momentum in kg m/s and force in N; dt a in
                                                           ///< m/s; dt v and dt v* in cells; 1 / m
-  Kokkos::View<std::uint32_t* [Dim], Device> fixed;  ///< [chunk][component]: bit l: prescribed in lane l
+  Kokkos::View<std::uint32_t* [Dim], Device> fixed;       ///< [chunk][component]: bit l: prescribed in lane l
 
   KOKKOS_FORCEINLINE_FUNCTION Real* at(int column, int node) const {
     return data.data() + static_cast<size_t>(column) * data.stride(1) + node;
