@@ -132,7 +132,7 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
   ++s.steps_since_repacked;
   const int leavers = count_leavers(exec, m);
   if (leavers == 0) return -1;
-  // One by one, particles cost eight times as much as in a sweep.
+  // Where many leave at once, another sweep costs less than adding them to the nodes one by one.
   const bool one_by_one = leavers < m.lanes.particle_count / 8;
   if (take_in_leavers(exec, m, next_virtual_stress, s.boundary.tractions, one_by_one) > 0) {
     make_more_room(s);

@@ -143,7 +143,10 @@ struct MoveGroup {
   [[gnu::noinline]] KOKKOS_FUNCTION void leave(const LaneGroup<Dim>& group, int layer, size_t entry) const {
     for (int l = 0; l < P::width; ++l) {
       const size_t e = entry + static_cast<size_t>(l);
-      if (lanes.id(e) < 0) continue;
+      if (lanes.id(e) < 0) {
+        lanes.clear(e);  // ghosts are carried along, and outside their cell would grow without bound
+        continue;
+      }
       auto cell = lanes.cell(group, l);
       Vector<Dim, Real> xi;
       for (int i = 0; i < Dim; ++i) xi[i] = *lanes.at(lanes.xi_column + i, e);

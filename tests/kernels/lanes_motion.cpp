@@ -17,12 +17,18 @@ template <int Dim, class Real>
 bool all_there(const CellLanes<Dim, Real, Device>& lanes) {
   const auto id = read(lanes.id);
   const auto groups = read(lanes.groups);
+  const auto data = read(lanes.data);
   std::vector<int> seen(static_cast<size_t>(lanes.particle_count), 0);
   for (int g = 0; g < lanes.group_count; ++g)
     for (int s = 0; s < groups(g).capacity; ++s)
       for (int l = 0; l < lanes.width; ++l) {
-        const int p = id(static_cast<size_t>((groups(g).first + s) * lanes.width + l));
-        if (p < 0) continue;
+        const auto e = static_cast<size_t>((groups(g).first + s) * lanes.width + l);
+        const int p = id(e);
+        if (p < 0) {
+          for (int i = 0; i < Dim; ++i)  // ghosts stay in their cells, or they would grow without bound
+            if (const auto xi = data(e, static_cast<size_t>(i)); !(xi >= 0 && xi < 1)) return false;
+          continue;
+        }
         if (s >= groups(g).slots) return false;
         ++seen[static_cast<size_t>(p)];
       }
