@@ -14,17 +14,31 @@
 
 namespace vsb {
 
+/// How far from particles there are groups too, for those that move there: in groups along x, in rows along
+/// the other axes.
+template <int Dim>
+struct Reach {
+  Vector<Dim, int> below = Vector<Dim, int>::zero(), above = Vector<Dim, int>::zero();
+  bool any() const {
+    bool some = false;
+    for (int i = 0; i < Dim; ++i) some = some || below[i] > 0 || above[i] > 0;
+    return some;
+  }
+};
+
 /// The box that holds cells lowest, ..., highest with a margin of void cells, so that the cells around them
-/// are known (Algorithm 1) and particles can move a while. It may reach over the faces of the grid: groups
-/// begin at the lowest cell along x.
+/// are known (Algorithm 1) and particles can move as far as `reach` says. It may reach over the faces of the
+/// grid: groups begin at the lowest cell along x.
 template <int Dim, class Real>
-CellBox<Dim> box_around(const Vector<Dim, int>& lowest, const Vector<Dim, int>& highest) {
+CellBox<Dim> box_around(const Vector<Dim, int>& lowest, const Vector<Dim, int>& highest,
+                        const Reach<Dim>& reach) {
   constexpr int width = Lanes<Real>::width;
   CellBox<Dim> box;
   for (int i = 0; i < Dim; ++i) {
-    const int margin = i == 0 ? std::max(width, 2) : 2;
-    box.first[i] = lowest[i] - margin;
-    box.cells[i] = highest[i] - lowest[i] + 1 + 2 * margin;
+    const int unit = i == 0 ? width : 1, void_cells = i == 0 ? std::max(width, 2) : 2;
+    const int below = void_cells + unit * reach.below[i], above = void_cells + unit * reach.above[i];
+    box.first[i] = lowest[i] - below;
+    box.cells[i] = highest[i] - lowest[i] + 1 + below + above;
     if (i == 0) box.cells[i] = (box.cells[i] + width - 1) / width * width;
   }
   return box;
@@ -63,45 +77,55 @@ struct CellRange {
   }
 };
 
-/// How many slots a group needs, and how many it gets.
+/// How many slots a group needs: the most particles of a cell. One place in the box.
 template <int Dim, class Real, class Device>
-struct GroupRoom {
-  CellLanes<Dim, Real, Device> lanes;
-  typename CellLanes<Dim, Real, Device>::Ints count;  ///< [cell of the box]: particles
-  int slack;                                          ///< slots to spare
-  int reserve;  ///< slots of a group without particles beside one that has some; 0: no such groups
-
-  /// Most particles of a cell.
-  KOKKOS_FUNCTION int needed(int place) const {
+struct NeededSlots {
+  using Ints = typename CellLanes<Dim, Real, Device>::Ints;
+  Ints count;   ///< [cell of the box]: particles
+  Ints needed;  ///< [place]
+  KOKKOS_FUNCTION void operator()(int place) const {
     constexpr int width = Lanes<Real>::width;
     int most = 0;
     for (int l = 0; l < width; ++l) most = math::max(most, static_cast<int>(count(place * width + l)));
-    return most;
+    needed(place) = most;
   }
-  KOKKOS_FUNCTION int capacity(int place, int needed_here) const {
-    if (needed_here > 0) return needed_here + slack;
-    return reserve > 0 && beside_particles(place) ? reserve : 0;
+};
+
+/// The most that is needed from `below` places before to `above` places behind along an axis. One place in
+/// the box.
+template <int Dim, class Real, class Device>
+struct NeededAround {
+  using Ints = typename CellLanes<Dim, Real, Device>::Ints;
+  CellLanes<Dim, Real, Device> lanes;
+  Ints needed, around;
+  int axis, below, above;
+  KOKKOS_FUNCTION void operator()(int place) const {
+    const int rows = lanes.rows_per_layer(), per_row = lanes.groups_per_row();
+    const int stride = axis == 0 ? 1 : axis < Dim - 1 ? per_row : per_row * rows;
+    const int places = axis == 0 ? per_row : axis < Dim - 1 ? rows : lanes.layers();
+    const int at = place / stride % places;
+    int most = 0;
+    for (int i = math::max(-below, -at); i <= math::min(above, places - 1 - at); ++i)
+      most = math::max(most, static_cast<int>(needed(place + i * stride)));
+    around(place) = most;
   }
-  KOKKOS_FUNCTION bool beside_particles(int place) const {
-    const int per_row = lanes.groups_per_row(), row = place / per_row, x = place % per_row,
-              j = row % lanes.rows_per_layer(), k = row / lanes.rows_per_layer();
-    for (int dk = -1; dk <= 1; ++dk)
-      for (int dj = -1; dj <= 1; ++dj)
-        for (int dx = -1; dx <= 1; ++dx) {
-          if (k + dk < 0 || k + dk >= lanes.layers() || j + dj < 0 || j + dj >= lanes.rows_per_layer() ||
-              x + dx < 0 || x + dx >= per_row)
-            continue;
-          if (needed(((k + dk) * lanes.rows_per_layer() + j + dj) * per_row + x + dx) > 0) return true;
-        }
-    return false;
-  }
+};
+
+/// How many slots a group gets.
+template <int Dim, class Real, class Device>
+struct GroupRoom {
+  typename CellLanes<Dim, Real, Device>::Ints needed;    ///< [place]
+  typename CellLanes<Dim, Real, Device>::Ints reached;   ///< [place]: above zero where there is a group
+  typename CellLanes<Dim, Real, Device>::Ints expected;  ///< [place]: slots that may be needed
+  int slack;                                             ///< slots to spare
+  KOKKOS_FUNCTION int capacity(int place) const { return reached(place) > 0 ? expected(place) + slack : 0; }
 };
 
 template <int Dim, class Real, class Device>
 struct CountGroups {
   GroupRoom<Dim, Real, Device> room;
   KOKKOS_FUNCTION void operator()(int place, int& groups, int& slots) const {
-    const int capacity = room.capacity(place, room.needed(place));
+    const int capacity = room.capacity(place);
     if (capacity == 0) return;
     ++groups;
     slots += capacity;
@@ -111,19 +135,19 @@ struct CountGroups {
 /// Lines the groups up, one after the other; a single work item.
 template <int Dim, class Real, class Device>
 struct PlaceGroups {
+  CellLanes<Dim, Real, Device> lanes;
   GroupRoom<Dim, Real, Device> room;
 
   KOKKOS_FUNCTION void operator()(int) const {
-    const auto& lanes = room.lanes;
     const int per_row = lanes.groups_per_row(), places = lanes.row_count() * per_row;
     int group = 0, slot = 0;
     for (int place = 0; place < places; ++place) {
-      const int needed = room.needed(place), capacity = room.capacity(place, needed);
+      const int capacity = room.capacity(place);
       if (capacity == 0) continue;
       auto& g = lanes.groups(group++);
       g = {};
       g.first = slot;
-      g.slots = needed;
+      g.slots = room.needed(place);
       g.capacity = capacity;
       g.x = place % per_row;
       g.row = place / per_row;
@@ -186,6 +210,8 @@ struct PackGroup {
         const size_t e = static_cast<size_t>(group.first + s) * width + static_cast<size_t>(l);
         lanes.clear(e);
         if (s < count) pack(bins.order(begin + s), e, lanes.cell(group, l));
+        auto& held = lanes.held(group.first + s);
+        held = (l == 0 ? 0 : held) | (s < count ? LaneMask(1) << l : 0);
       }
     }
   }
@@ -271,6 +297,16 @@ struct FixLaneNodes {
 
 }  // namespace kernel
 
+/// How often a step looks at all particles: as their number per cell makes it worth while.
+enum class Sweeps : std::uint8_t { chosen, one, two };
+
+/// Particles per cell from which one sweep is faster: the mass matrix is per cell, what it saves is per
+/// particle.
+template <int Dim>
+constexpr int worth_one_sweep = Dim == 1   ? 3
+                                : Dim == 2 ? 9
+                                           : 27;
+
 /// What the cell lanes of a body need beside the particles.
 template <int Dim, class Real, class Device>
 struct LaneMemory {
@@ -279,19 +315,41 @@ struct LaneMemory {
   Leavers<Dim, Real, Device> leavers;
   UniformGrid<Dim, Real> grid;
   Walls<Dim> walls;
-  int slack = 1;    ///< slots that a group has to spare
-  int reserve = 0;  ///< slots of groups beside the body, for particles that move there
+  int slack = 1;  ///< slots that a group has to spare
+  Reach<Dim> reach;
+  Sweeps sweeps = Sweeps::chosen;
+  typename CellLanes<Dim, Real, Device>::Ints source;  ///< scratch of repack_lanes, as is column_before
+  Kokkos::View<Real*, Device> column_before;
 };
 
+/// Makes steps take one sweep or two.
+template <int Dim, class Real, class Device>
+void set_sweeps(CellLanes<Dim, Real, Device>& lanes, bool one) {
+  lanes.mass_matrices =
+      one ? decltype(lanes.mass_matrices)("vsb::mass_matrices", static_cast<size_t>(lanes.group_count) *
+                                                                    lanes.mass_matrix_size * lanes.width)
+          : decltype(lanes.mass_matrices)();
+}
+
 namespace detail {
+
+/// The first n entries of memory that is kept from one use to the next.
+template <class View>
+View scratch(View& kept, size_t n) {
+  if (kept.extent(0) < n) {
+    kept = View();
+    kept = View(Kokkos::view_alloc("vsb::scratch", Kokkos::WithoutInitializing), n + n / 8);
+  }
+  return Kokkos::subview(kept, std::make_pair(size_t(0), n));
+}
 
 /// Columns and numbers for `slots` slots.
 template <int Dim, class Real, class Device>
 void allocate_particle_columns(CellLanes<Dim, Real, Device>& lanes, int slots) {
   const auto entries = static_cast<size_t>(padded_rows<Real>(slots * lanes.width));
-  lanes.data = decltype(lanes.data)(Kokkos::view_alloc("vsb::cell_lanes", Kokkos::WithoutInitializing),
-                                    entries, static_cast<size_t>(lanes.columns()));
+  lanes.data = decltype(lanes.data)("vsb::cell_lanes", entries, static_cast<size_t>(lanes.columns()));
   lanes.id = decltype(lanes.id)(Kokkos::view_alloc("vsb::lane_ids", Kokkos::WithoutInitializing), entries);
+  lanes.held = decltype(lanes.held)("vsb::lanes_held", static_cast<size_t>(slots));
 }
 
 /// The nodes of lanes whose box and groups are known.
@@ -335,7 +393,26 @@ void number_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const Cell
   lanes.box = box;
   int groups = 0, slots = 0;
   const Kokkos::RangePolicy<Exec> over_places(exec, 0, lanes.row_count() * lanes.groups_per_row());
-  const kernel::GroupRoom<Dim, Real, Device> room{lanes, count, m.slack, m.reserve};
+  using Ints = typename CellLanes<Dim, Real, Device>::Ints;
+  const auto places = static_cast<size_t>(lanes.row_count() * lanes.groups_per_row());
+  kernel::GroupRoom<Dim, Real, Device> room{Ints("vsb::needed_slots", places), {}, {}, m.slack};
+  Kokkos::parallel_for("vsb::needed_slots", over_places,
+                       kernel::NeededSlots<Dim, Real, Device>{count, room.needed});
+  room.reached = room.expected = room.needed;
+  if (m.reach.any()) {
+    const auto widen = [&](Ints& needed, int axis, int below, int above) {
+      const Ints around("vsb::slots_around", places);
+      Kokkos::parallel_for(
+          "vsb::slots_around", over_places,
+          kernel::NeededAround<Dim, Real, Device>{lanes, needed, around, axis, below, above});
+      needed = around;
+    };
+    // A place lies above those from which it is reached.
+    for (int i = 0; i < Dim; ++i) widen(room.reached, i, m.reach.above[i], m.reach.below[i]);
+    // The edge of a body is thinner than what will come.
+    room.expected = room.reached;
+    for (int i = 0; i < Dim; ++i) widen(room.expected, i, 1, 1);
+  }
   Kokkos::parallel_reduce("vsb::count_groups", over_places, kernel::CountGroups<Dim, Real, Device>{room},
                           groups, slots);
   exec.fence();
@@ -343,28 +420,37 @@ void number_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const Cell
   lanes.slot_count = slots;
   lanes.groups = decltype(lanes.groups)("vsb::lane_groups", static_cast<size_t>(groups));
   Kokkos::parallel_for("vsb::place_groups", Kokkos::RangePolicy<Exec>(exec, 0, 1),
-                       kernel::PlaceGroups<Dim, Real, Device>{{lanes, count, m.slack, m.reserve}});
+                       kernel::PlaceGroups<Dim, Real, Device>{lanes, room});
   number_nodes(exec, m);
+  int cells = 0;
+  Kokkos::parallel_reduce(
+      "vsb::count_cells", Kokkos::RangePolicy<Exec>(exec, 0, static_cast<int>(count.extent(0))),
+      KOKKOS_LAMBDA(int cell, int& n) { n += count(cell) > 0; }, cells);
+  exec.fence();
+  set_sweeps(lanes, m.sweeps == Sweeps::one ||
+                        (m.sweeps == Sweeps::chosen && lanes.particle_count >= worth_one_sweep<Dim> * cells));
 }
 
 /// Lists with room for all particles of their layers; memory that nobody writes to is not taken.
 template <class Exec, int Dim, class Real, class Device>
 void allocate_leavers(const Exec& exec, LaneMemory<Dim, Real, Device>& m) {
   const auto& lanes = m.lanes;
-  const auto entries = static_cast<size_t>(lanes.slot_count * lanes.width);
+  const auto slots = static_cast<size_t>(lanes.slot_count),
+             numbers = static_cast<size_t>(lanes.columns() * lanes.width);
   auto& l = m.leavers;
-  if (l.data.extent(0) < entries || l.data.extent(1) != static_cast<size_t>(lanes.columns())) {
-    l.data = decltype(l.data)(Kokkos::view_alloc("vsb::leavers", Kokkos::WithoutInitializing), entries,
-                              static_cast<size_t>(lanes.columns()));
-    l.head = decltype(l.head)(Kokkos::view_alloc("vsb::leaver_heads", Kokkos::WithoutInitializing), entries);
+  if (l.data.extent(0) < slots || l.data.extent(1) != numbers) {
+    l.data =
+        decltype(l.data)(Kokkos::view_alloc("vsb::leavers", Kokkos::WithoutInitializing), slots, numbers);
+    l.head = decltype(l.head)(Kokkos::view_alloc("vsb::leaver_heads", Kokkos::WithoutInitializing), slots);
   }
   l.count = decltype(l.count)("vsb::leaver_count", static_cast<size_t>(lanes.layers()));
+  l.lost = decltype(l.lost)("vsb::leavers_lost", static_cast<size_t>(lanes.layers()));
   l.first = decltype(l.first)("vsb::leaver_first", static_cast<size_t>(lanes.layers()));
   const auto first = l.first;
   Kokkos::parallel_for(
       "vsb::first_leavers", Kokkos::RangePolicy<Exec>(exec, 0, lanes.layers()), KOKKOS_LAMBDA(int k) {
         const int g = lanes.layer_first(k);
-        first(k) = g < lanes.group_count ? lanes.groups(g).first * lanes.width : 0;
+        first(k) = g < lanes.group_count ? lanes.groups(g).first : 0;
       });
 }
 
@@ -431,7 +517,7 @@ int pack_particles(const Exec& exec, const Particles<Dim, Real, Device>& particl
       const int cell = found == std::numeric_limits<int>::max() ? 0 : sign * found;
       (sign > 0 ? lowest : highest)[i] = cell;
     }
-  const kernel::BoxBasis<Dim, Real> basis{m.grid, box_around<Dim, Real>(lowest, highest)};
+  const kernel::BoxBasis<Dim, Real> basis{m.grid, box_around<Dim, Real>(lowest, highest, m.reach)};
   auto bins = allocate_bins<Device>(n, basis.bin_count());
   const auto where = locate_particles(exec, particles, bins, basis);
   if (where.lost >= 0) return where.lost;
@@ -440,9 +526,9 @@ int pack_particles(const Exec& exec, const Particles<Dim, Real, Device>& particl
   Kokkos::parallel_for(
       "vsb::particles_of_cell", Kokkos::RangePolicy<Exec>(exec, 0, static_cast<int>(count.extent(0))),
       KOKKOS_LAMBDA(int b) { count(b) = bins.offset(b + 1) - bins.offset(b); });
-  detail::number_lanes(exec, m, basis.box, count);
   auto& lanes = m.lanes;
   lanes.particle_count = n;
+  detail::number_lanes(exec, m, basis.box, count);
   detail::allocate_particle_columns(lanes, lanes.slot_count);
   Kokkos::parallel_for("vsb::pack_particles", Kokkos::RangePolicy<Exec>(exec, 0, lanes.group_count),
                        kernel::PackGroup<Dim, Real, Device>{lanes, particles, bins, m.grid});

@@ -9,14 +9,21 @@
 
 namespace vsb {
 
-/// The coefficients of a nodal field on the cells of a group.
+/// A nodal field at the corners of the cells of a group.
 template <int Dim, class Real, class Device, class P>
-KOKKOS_FORCEINLINE_FUNCTION void coefficients_of(const LaneNodes<Dim, Real, Device>& nodes, int column,
-                                                 const LaneGroup<Dim>& group, CellPolynomial<Dim, P>& c) {
+KOKKOS_FORCEINLINE_FUNCTION void values_at_corners(const LaneNodes<Dim, Real, Device>& nodes, int column,
+                                                   const LaneGroup<Dim>& group, Vector<(1 << Dim), P>& c) {
   static_for<LaneGroup<Dim>::corner_rows>([&](auto r) VSB_UNROLLED {
     c[2 * r] = nodes.load(column, group.node[r]);
     c[2 * r + 1] = nodes.load(column, group.node[r] + 1);
   });
+}
+
+/// The coefficients of a nodal field on the cells of a group.
+template <int Dim, class Real, class Device, class P>
+KOKKOS_FORCEINLINE_FUNCTION void coefficients_of(const LaneNodes<Dim, Real, Device>& nodes, int column,
+                                                 const LaneGroup<Dim>& group, CellPolynomial<Dim, P>& c) {
+  values_at_corners(nodes, column, group, c);
   coefficients_from_nodes<Dim>(c);
 }
 
@@ -29,9 +36,11 @@ class LayerSums {
   static constexpr int rows = LaneGroup<Dim>::corner_rows;
 
  public:
+  /// Begins with zero, or adds to what is there.
   KOKKOS_FUNCTION LayerSums(const CellLanes<Dim, Real, Device>& lanes,
-                            const LaneNodes<Dim, Real, Device>& nodes, int layer)
+                            const LaneNodes<Dim, Real, Device>& nodes, int layer, bool anew = true)
       : nodes_(nodes) {
+    if (!anew) return;
     const Ints& plane = lanes.plane_first;
     for (int c = First; c < First + Count; ++c) {
       zero(nodes.at(nodes.lower_sums + c, 0), plane(layer), plane(layer + 1));

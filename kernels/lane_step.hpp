@@ -20,6 +20,7 @@ struct LaneState {
   LaneBoundary<Dim, Device> boundary;
   long long repacked = 0;  ///< times
   int steps_since_repacked = 1000;
+  int leavers = 0;  ///< particles that left their cells in the last step
 
   bool cubic() const {
     for (int i = 1; i < Dim; ++i)
@@ -83,16 +84,17 @@ int pack_lanes(const Exec& exec, const Particles<Dim, Real, Device>& particles,
   return lost;
 }
 
-/// Where particles flow, groups get slots to spare, and there are groups where the body is about to be.
+/// Where groups overflow often, they get slots to spare.
 template <int Dim, class Real, class Device>
-void make_more_room(LaneState<Dim, Real, Device>& s) {
+void make_more_room(LaneState<Dim, Real, Device>& s, const HomelessCount& homeless) {
   auto& m = s.memory;
   if (s.steps_since_repacked < 100) {
-    const int per_group = m.lanes.particle_count / math::max(1, m.lanes.group_count * m.lanes.width);
-    m.slack = math::min(m.slack + 2, 2 + per_group);
-    m.reserve = m.slack + per_group;
+    const int per_cell = m.lanes.particle_count / math::max(1, m.lanes.group_count * m.lanes.width);
+    if (homeless.without_slot > 0) m.slack = math::min(m.slack + 2, 2 + per_cell);
+  } else if (s.steps_since_repacked >= 1000) {
+    m.slack = 1;
+    m.reach = {};
   }
-  s.steps_since_repacked = 0;
   ++s.repacked;
 }
 
@@ -116,27 +118,42 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
   Kokkos::parallel_for("vsb::update_lane_nodes", over_chunks,
                        kernel::UpdateLaneNodes<Dim, Real, Device>{
                            {m.nodes}, options.gravity, m.grid.inverse_spacing, options.damping, options.dt});
-  Kokkos::parallel_for("vsb::accelerate_lanes", detail::over_layers(exec, s),
-                       kernel::AccelerateLanes<Dim, Real, Device>{m.lanes, m.nodes});
+  if (m.lanes.one_sweep())
+    Kokkos::parallel_for("vsb::remap_lanes", detail::over_layers(exec, s),
+                         kernel::RemapLanes<Dim, Real, Device>{m.lanes, m.nodes});
+  else
+    Kokkos::parallel_for("vsb::accelerate_lanes", detail::over_layers(exec, s),
+                         kernel::AccelerateLanes<Dim, Real, Device>{m.lanes, m.nodes});
   Kokkos::parallel_for(
       "vsb::remap_lane_nodes", over_chunks,
       kernel::RemapLaneNodes<Dim, Real, Device>{{m.nodes}, options.dt * m.grid.inverse_spacing[0]});
+  // Where many are about to leave, the nodes' sums wait for them: another sweep costs less than adding them
+  // one by one.
+  bool summed = s.leavers < m.lanes.particle_count / 50;
   detail::with_cubic(s, [&](auto cubic) {
     Kokkos::parallel_for(
         "vsb::move_lanes", detail::over_layers(exec, s),
         kernel::MoveLanes<decltype(cubic)::value, Field, Material, Volume, Dim, Real, Device>{
             detail::loaded_lanes(s),
             {m.lanes, m.nodes, m.grid, material, volume, m.leavers},
-            next_virtual_stress});
+            next_virtual_stress,
+            summed});
   });
   ++s.steps_since_repacked;
-  const int leavers = count_leavers(exec, m);
-  if (leavers == 0) return -1;
-  // Where many leave at once, another sweep costs less than adding them to the nodes one by one.
-  const bool one_by_one = leavers < m.lanes.particle_count / 8;
-  if (take_in_leavers(exec, m, next_virtual_stress, s.boundary.tractions, one_by_one) > 0) {
-    make_more_room(s);
-    const int lost = repack_lanes(exec, m);
+  s.leavers = count_leavers(exec, m);
+  if (s.leavers == 0) {
+    if (!summed) detail::sum_lanes(exec, s, next_virtual_stress);
+    return -1;
+  }
+  summed = summed && s.leavers < m.lanes.particle_count / 16;
+  // Holes cost as much as particles; to close them costs as much as a particle's way.
+  const bool closing = s.steps_since_repacked % 8 == 0;
+  const auto homeless = take_in_leavers(exec, m, next_virtual_stress, s.boundary.tractions, summed, closing);
+  if (homeless.any()) {
+    make_more_room(s, homeless);
+    // Where particles flow, there are groups where the body is about to be.
+    const int lost = repack_lanes(exec, m, homeless.without_group > 0 && s.steps_since_repacked < 100);
+    s.steps_since_repacked = 0;
     if (lost >= 0) return lost;
     mark_packed_lanes(exec, s);
     detail::sum_lanes(exec, s, next_virtual_stress);
@@ -144,7 +161,7 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
   }
   const bool marked = update_occupied(exec, m.lanes, s.boundary) && Field::loaded;
   if (marked) mark_lanes(exec, m.lanes, m.grid.cells, s.boundary, false);
-  if (!one_by_one)
+  if (!summed)
     detail::sum_lanes(exec, s, next_virtual_stress);
   else if (marked)
     detail::sum_lanes(exec, s, next_virtual_stress, s.boundary.stale);

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <vsb/kernels/lane_scatter.hpp>
+#include <vsb/physics/cell_mass_matrix.hpp>
 
 namespace vsb {
 
@@ -30,6 +31,19 @@ KOKKOS_FORCEINLINE_FUNCTION void moments_of(const CellLanes<Dim, Real, Device>& 
   set_zero<Dim>(m);
   for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width)
     add_moments<Dim>(m, lanes.load(weight, entry), lanes.load_xi(entry));
+}
+
+/// Stores the mass matrices of a group's cells.
+template <int Dim, class Real, class Device>
+[[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void store_mass_matrices(
+    const CellLanes<Dim, Real, Device>& lanes, int g) {
+  using P = typename Lanes<Real>::Pack;
+  const auto& group = lanes.groups(g);
+  CellMassMatrix<Dim, P> M;
+  static_for<M.size>([&](auto k) VSB_UNROLLED { M[k] = P(0); });
+  for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width)
+    add_mass<Dim>(M, lanes.load(lanes.mass_column, entry), lanes.load_xi(entry));
+  static_for<M.size>([&](auto k) VSB_UNROLLED { M[k].store(lanes.mass_matrix_at(g, k)); });
 }
 
 /// The moments of momentum.

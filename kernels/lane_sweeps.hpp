@@ -9,6 +9,10 @@
 ///   C and A of the next step in one, while the particles are at hand.
 ///
 /// The nodes bring dt a, dt v in cells and dt v* in cells, so that only sums are left for the particles.
+///
+/// With many particles in a cell B does without them. p*_I = p_I + dt sum_J M_IJ a_J, and the consistent mass
+/// matrix M_IJ = sum_p m_p N_Ip N_Jp is summed up by A, cell by cell (physics/cell_mass_matrix.hpp):
+/// RemapLanes adds M dt a to the nodes, and C begins with v_p <- v_p + dt sum_I N_Ip a_I.
 #pragma once
 
 #include <vsb/kernels/lane_tractions.hpp>
@@ -31,12 +35,32 @@ struct SumLanes {
     StepSums<Dim, Real, Device> sums(on.lanes, nodes, layer);
     for (int g = on.lanes.layer_first(layer); g < on.lanes.layer_first(layer + 1); ++g) {
       const auto& group = on.lanes.groups(g);
+      if (group.slots == 0) continue;
       sums.begin(group);
       sum_group_with<Cubic>(on, group, virtual_stress, sums);
+      if (on.lanes.one_sweep()) lane_sums::store_mass_matrices(on.lanes, g);
     }
     sums.end();
   }
 };
+
+/// v_p <- v_p + dt sum_I N_Ip a_I for the particles of a group.
+template <int Dim, class Real, class Device>
+KOKKOS_FORCEINLINE_FUNCTION void accelerate(const CellLanes<Dim, Real, Device>& lanes,
+                                            const LaneNodes<Dim, Real, Device>& nodes,
+                                            const LaneGroup<Dim>& group) {
+  using P = typename Lanes<Real>::Pack;
+  CellPolynomial<Dim, P> dv[Dim];
+  static_for<Dim>([&](auto i)
+                      VSB_UNROLLED { coefficients_of(nodes, nodes.increment_column + i, group, dv[i]); });
+  for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
+    const auto xi = lanes.load_xi(entry);
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
+      const P v = lanes.load(lanes.velocity_column + i, entry);
+      lanes.store(lanes.velocity_column + i, entry, v + value_at<Dim>(dv[i], xi));
+    });
+  }
+}
 
 /// Sweep B.
 template <int Dim, class Real, class Device>
@@ -50,25 +74,48 @@ struct AccelerateLanes {
     Momentum sums(lanes, nodes, layer);
     for (int g = lanes.layer_first(layer); g < lanes.layer_first(layer + 1); ++g) {
       const auto& group = lanes.groups(g);
+      if (group.slots == 0) continue;
       sums.begin(group);
-      accelerate(group, sums);
+      accelerate_and_sum(group, sums);
     }
     sums.end();
   }
-  [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void accelerate(const LaneGroup<Dim>& group,
-                                                                  Momentum& sums) const {
-    CellPolynomial<Dim, P> dv[Dim], p[Dim];
-    static_for<Dim>([&](auto i)
-                        VSB_UNROLLED { coefficients_of(nodes, nodes.increment_column + i, group, dv[i]); });
-    for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
-      const auto xi = lanes.load_xi(entry);
-      static_for<Dim>([&](auto i) VSB_UNROLLED {
-        const P v = lanes.load(lanes.velocity_column + i, entry);
-        lanes.store(lanes.velocity_column + i, entry, v + value_at<Dim>(dv[i], xi));
-      });
-    }
+  [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void accelerate_and_sum(const LaneGroup<Dim>& group,
+                                                                          Momentum& sums) const {
+    accelerate(lanes, nodes, group);
+    CellPolynomial<Dim, P> p[Dim];
     lane_sums::momentum(lanes, group, p);
     static_for<Dim>([&](auto i) VSB_UNROLLED { sums.add_moments(1 + i, group, p[i]); });
+  }
+};
+
+/// p*_I = p_I + sum_J M_IJ dt a_J, in place of sweep B.
+template <int Dim, class Real, class Device>
+struct RemapLanes {
+  using P = typename Lanes<Real>::Pack;
+  using Momentum = LayerSums<1, Dim, Dim, Real, Device>;
+  CellLanes<Dim, Real, Device> lanes;
+  LaneNodes<Dim, Real, Device> nodes;
+
+  KOKKOS_FUNCTION void operator()(int layer) const {
+    Momentum sums(lanes, nodes, layer, false);
+    for (int g = lanes.layer_first(layer); g < lanes.layer_first(layer + 1); ++g) {
+      const auto& group = lanes.groups(g);
+      if (group.slots == 0) continue;
+      sums.begin(group);
+      add_gain(g, group, sums);
+    }
+    sums.end();
+  }
+  [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void add_gain(int g, const LaneGroup<Dim>& group,
+                                                                Momentum& sums) const {
+    CellMassMatrix<Dim, P> M;
+    static_for<M.size>([&](auto k) VSB_UNROLLED { M[k] = P::load(lanes.mass_matrix_at(g, k)); });
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
+      CellPolynomial<Dim, P> dv;
+      values_at_corners(nodes, nodes.increment_column + i, group, dv);
+      sums.add(1 + i, group, times<Dim>(M, dv));
+    });
   }
 };
 
@@ -123,8 +170,9 @@ struct MoveGroup {
       lanes.store_row(lanes.stress_column, entry, material.advance(sigma, L, P(1)));
     } else {
       // Lane by lane: such materials branch.
+      const LaneMask held = lanes.held(entry / P::width);
       for (int l = 0; l < P::width; ++l) {
-        if (lanes.id(entry + static_cast<size_t>(l)) < 0) continue;  // a ghost may be strained without end
+        if (!(held >> l & 1)) continue;  // a ghost may be strained without end
         Vector<remembered, Real> state;
         SymmetricTensor<Dim, Real> s;
         Matrix<Dim, Real> L_l;
@@ -139,24 +187,104 @@ struct MoveGroup {
     }
   }
 
-  /// Takes the particles of a slot that left their cell to the layer's list.
-  [[gnu::noinline]] KOKKOS_FUNCTION void leave(const LaneGroup<Dim>& group, int layer, size_t entry) const {
-    for (int l = 0; l < P::width; ++l) {
-      const size_t e = entry + static_cast<size_t>(l);
-      if (lanes.id(e) < 0) {
-        lanes.clear(e);  // ghosts are carried along, and outside their cell would grow without bound
-        continue;
+  /// Takes the particles of a slot that left their cell to the layer's list. Ghosts are carried along, and
+  /// outside their cell would grow without bound: the slot's are reset.
+  [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void leave(const LaneGroup<Dim>& group, int layer,
+                                                             size_t entry) const {
+    const size_t slot = entry / P::width;
+    const LaneMask held = lanes.held(slot);
+    const int n = leavers.first(layer) + leavers.count(layer);
+    auto& head = leavers.head(n);
+    auto xi = lanes.load_xi(entry);
+    LaneMask below[Dim], above[Dim], leaving = 0;
+    if (next_to_here(group, xi, held, below, above)) {
+      for (int i = 0; i < Dim; ++i) leaving |= below[i] | above[i];
+      for (int l = 0; l < P::width; ++l) {
+        auto cell = lanes.cell(group, l);
+        for (int i = 0; i < Dim; ++i)
+          cell[i] += static_cast<int>(above[i] >> l & 1) - static_cast<int>(below[i] >> l & 1);
+        head.cell[l] = cell;
       }
-      auto cell = lanes.cell(group, l);
-      Vector<Dim, Real> xi;
-      for (int i = 0; i < Dim; ++i) xi[i] = *lanes.at(lanes.xi_column + i, e);
-      if (!to_next_cell(cell, xi)) continue;
-      const int n = leavers.first(layer) + leavers.count(layer)++;
-      for (int c = 0; c < lanes.columns(); ++c) leavers.data(n, c) = *lanes.at(c, e);
-      for (int i = 0; i < Dim; ++i) leavers.data(n, lanes.xi_column + i) = xi[i];
-      leavers.head(n) = {lanes.id(e), cell, false};
-      lanes.clear(e);
+      head.far = 0;
+      head.to[0] = below[Dim - 1];
+      head.to[2] = above[Dim - 1];
+      head.to[1] = leaving & ~head.to[0] & ~head.to[2];
+      if (Dim == 1) {
+        head.to[1] = leaving;
+        head.to[0] = head.to[2] = 0;
+      }
+    } else {
+      leaving = leave_one_by_one(group, xi, held, head);
     }
+    const LaneMask staying = held & ~leaving;
+    lanes.held(slot) = staying;
+    const auto stays = P::Mask::from_bits(staying);
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
+      if (leaving != 0) xi[i].store(&leavers.data(n, (lanes.xi_column + i) * P::width));
+      lanes.store(lanes.xi_column + i, entry, math::select(stays, xi[i], P(Real(0.5))));
+    });
+    for (int c = Dim; c < lanes.columns(); ++c) {
+      const P value = lanes.load(c, entry);
+      if (leaving != 0) value.store(&leavers.data(n, c * P::width));
+      lanes.store(c, entry, math::select(stays, value, P(Real(0))));
+    }
+    if (leaving == 0) return;
+    head.x = group.x;
+    head.row = group.row;
+    for (int t = 0; t < 3; ++t) head.homeless[t] = 0;
+    for (int l = 0; l < P::width; ++l) {
+      if (!(leaving >> l & 1)) continue;
+      const size_t e = entry + static_cast<size_t>(l);
+      head.id[l] = lanes.id(e);
+      lanes.id(e) = -1;
+      ++leavers.lost(layer);
+    }
+    ++leavers.count(layer);
+  }
+  /// Where all particles of a slot away from the faces of the grid are in their cell or the next one: which
+  /// are below and above along every axis; xi becomes that in the cell where they are.
+  KOKKOS_FORCEINLINE_FUNCTION bool next_to_here(const LaneGroup<Dim>& group, Vector<Dim, P>& xi,
+                                                LaneMask held, LaneMask (&below)[Dim],
+                                                LaneMask (&above)[Dim]) const {
+    const auto first = lanes.cell(group, 0);
+    bool inner = first[0] > 0 && first[0] + P::width < grid.cells[0];
+    for (int i = 1; i < Dim; ++i) inner = inner && first[i] > 0 && first[i] + 1 < grid.cells[i];
+    if (!inner) return false;
+    Vector<Dim, P> there;
+    LaneMask inside = held;
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
+      const auto lower = xi[i] < P(Real(0)), upper = xi[i] >= P(Real(1));
+      there[i] =
+          xi[i] + math::select(lower, P(Real(1)), P(Real(0))) - math::select(upper, P(Real(1)), P(Real(0)));
+      below[i] = bits_of(lower) & held;
+      above[i] = bits_of(upper) & held;
+      inside &= bits_of((there[i] >= P(Real(0))) & (there[i] < P(Real(1))));
+    });
+    if (inside != held) return false;
+    xi = there;
+    return true;
+  }
+  /// The same in any case, the cells of the particles that left theirs among it; which lanes these are.
+  [[gnu::noinline]] KOKKOS_FUNCTION LaneMask
+  leave_one_by_one(const LaneGroup<Dim>& group, Vector<Dim, P>& xi, LaneMask held,
+                   typename Leavers<Dim, Real, Device>::Head& head) const {
+    LaneMask leaving = 0;
+    head.far = head.to[0] = head.to[1] = head.to[2] = 0;
+    for (int l = 0; l < P::width; ++l) {
+      if (!(held >> l & 1)) continue;
+      const auto before = lanes.cell(group, l);
+      auto cell = before;
+      Vector<Dim, Real> here;
+      for (int i = 0; i < Dim; ++i) here[i] = xi[i][l];
+      if (!to_next_cell(cell, here)) continue;
+      for (int i = 0; i < Dim; ++i) xi[i].set(l, here[i]);
+      const LaneMask lane = LaneMask(1) << l;
+      const int layers = Dim == 1 ? 0 : cell[Dim - 1] - before[Dim - 1];
+      (layers < -1 || layers > 1 ? head.far : head.to[layers + 1]) |= lane;
+      head.cell[l] = cell;
+      leaving |= lane;
+    }
+    return leaving;
   }
   /// The cell in which a particle is and its place there; whether that is another cell than before. Round-off
   /// at a face of the grid counts as inside, as everywhere (UniformGrid::contains).
@@ -191,17 +319,32 @@ struct MoveLanes {
   LoadedLanes<Dim, Real, Device> on;
   MoveGroup<Cubic, Material, Volume, Dim, Real, Device> move;
   Field virtual_stress;
+  bool and_sum;  ///< whether A follows at once
 
   KOKKOS_FUNCTION void operator()(int layer) const {
+    move.leavers.count(layer) = move.leavers.lost(layer) = 0;
+    if (!and_sum) {
+      for (int g = on.lanes.layer_first(layer); g < on.lanes.layer_first(layer + 1); ++g)
+        accelerate_and_move(on.lanes.groups(g), layer);
+      return;
+    }
     StepSums<Dim, Real, Device> sums(on.lanes, move.nodes, layer);
-    move.leavers.count(layer) = 0;
     for (int g = on.lanes.layer_first(layer); g < on.lanes.layer_first(layer + 1); ++g) {
       const auto& group = on.lanes.groups(g);
-      move(group, layer);
+      if (group.slots == 0) continue;
+      accelerate_and_move(group, layer);
       sums.begin(group);
       sum_group_with<Cubic>(on, group, virtual_stress, sums);
+      if (on.lanes.one_sweep()) lane_sums::store_mass_matrices(on.lanes, g);
     }
     sums.end();
+  }
+  KOKKOS_FORCEINLINE_FUNCTION void accelerate_and_move(const LaneGroup<Dim>& group, int layer) const {
+    if (on.lanes.one_sweep()) accelerate_apart(group);
+    move(group, layer);
+  }
+  [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void accelerate_apart(const LaneGroup<Dim>& group) const {
+    accelerate(on.lanes, move.nodes, group);
   }
 };
 

@@ -127,9 +127,10 @@ KOKKOS_FORCEINLINE_FUNCTION void function_traction(const LoadedLanes<Dim, Real, 
     const auto q = monomials<Dim>(xi);
     const P V = lanes.load(lanes.volume_column, entry);
     VirtualStressValue<Dim, P> bar;
+    const LaneMask held = lanes.held(entry / P::width);
     for (int l = 0; l < P::width; ++l) {
       auto at = VirtualStressValue<Dim, Real>::zero();
-      if (lanes.id(entry + static_cast<size_t>(l)) >= 0) {  // no field need be finite at a ghost's place
+      if (held >> l & 1) {  // no field need be finite at a ghost's place
         Vector<Dim, Real> xi_l;
         for (int i = 0; i < Dim; ++i) xi_l[i] = xi[i][l];
         at = field.at(on.grid.map(lanes.cell(group, l), xi_l).x, tractions);

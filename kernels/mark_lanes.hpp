@@ -40,21 +40,13 @@ struct OccupyLanes {
       std::uint64_t bits = 0;
       for (int x = 64 / width * w; x < math::min(64 / width * (w + 1), per_row); ++x) {
         const int g = lanes.group_at(row * per_row + x);
-        if (g >= 0) bits |= cells_of(lanes.groups(g)) << (x * width - 64 * w);
+        if (g < 0) continue;
+        bits |= static_cast<std::uint64_t>(lanes.cells_with_particles(lanes.groups(g)))
+                << (x * width - 64 * w);
       }
       if (bits != occupied(row, w)) ++changes;
       occupied(row, w) = bits;
     }
-  }
-  KOKKOS_FUNCTION std::uint64_t cells_of(const LaneGroup<Dim>& group) const {
-    constexpr int width = Lanes<Real>::width;
-    constexpr auto all = static_cast<std::uint64_t>(-1) >> (64 - width);
-    std::uint64_t bits = 0;
-    for (int s = 0; s < group.slots && bits != all; ++s)
-      for (int l = 0; l < width; ++l)
-        if (lanes.id(static_cast<size_t>(group.first + s) * width + static_cast<size_t>(l)) >= 0)
-          bits |= std::uint64_t(1) << l;
-    return bits;
   }
 };
 

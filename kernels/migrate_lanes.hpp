@@ -9,6 +9,7 @@
 
 #include <vsb/kernels/build_lanes.hpp>
 #include <vsb/kernels/particles_to_grid.hpp>
+#include <vsb/physics/cell_mass_matrix.hpp>
 #include <vsb/physics/multilinear.hpp>
 #include <vsb/physics/shape.hpp>
 
@@ -16,9 +17,17 @@ namespace vsb {
 
 namespace kernel {
 
+/// Lanes of a slot whose particle found no place where it went.
+struct Homeless {
+  LaneMask without_group, without_slot;
+};
+
 /// One layer: takes in the leavers that go there. Counts those without a place, each once.
 template <int Dim, class Real, class Device, class Field>
 struct TakeInLeavers {
+  static constexpr int width = Lanes<Real>::width;
+  using P = typename Lanes<Real>::Pack;
+  using Head = typename Leavers<Dim, Real, Device>::Head;
   CellLanes<Dim, Real, Device> lanes;
   LaneNodes<Dim, Real, Device> nodes;
   Leavers<Dim, Real, Device> leavers;
@@ -26,6 +35,7 @@ struct TakeInLeavers {
   Field virtual_stress;
   BoundaryNodes<Device> tractions;  ///< [node of the lanes]
   bool scatter;                     ///< whether to add to the nodes
+  bool closing;                     ///< whether to close ranks
 
   KOKKOS_FUNCTION int layer_of(const Vector<Dim, int>& cell) const {
     return Dim == 1 ? 0 : cell[Dim - 1] - lanes.box.first[Dim - 1];
@@ -39,47 +49,139 @@ struct TakeInLeavers {
     }
     return true;
   }
-  KOKKOS_FUNCTION void operator()(int layer, int& homeless) const {
-    for (int g = lanes.layer_first(layer); g < lanes.layer_first(layer + 1); ++g)
-      while (lanes.groups(g).slots > 0 && last_slot_is_empty(lanes.groups(g))) --lanes.groups(g).slots;
+  KOKKOS_FUNCTION void operator()(int layer, int& without_group, int& without_slot) const {
+    for (int g = lanes.layer_first(layer); g < lanes.layer_first(layer + 1); ++g) {
+      auto& group = lanes.groups(g);
+      while (group.slots > 0 && lanes.held(group.first + group.slots - 1) == 0) --group.slots;
+    }
     for (int from = math::max(layer - 1, 0); from <= math::min(layer + 1, lanes.layers() - 1); ++from)
       for (int n = leavers.first(from); n < leavers.first(from) + leavers.count(from); ++n) {
         auto& head = leavers.head(n);
-        const int to = within(head.cell) ? layer_of(head.cell) : -2;
-        const bool far = to < from - 1 || to > from + 1;
-        if (to == layer && !far)
-          head.homeless = !take_in(n, head);
-        else if (far && from == layer)
-          head.homeless = true;
-        else
-          continue;
-        if (head.homeless) ++homeless;
+        const int way = layer - from + 1;
+        Homeless homeless{from == layer ? head.far : 0, 0};
+        for (LaneMask left = head.to[way]; left != 0;) {
+          const LaneMask together = with_the_first(head, left);
+          take_in(n, head, together, homeless);
+          left &= ~together;
+        }
+        head.homeless[way] = homeless.without_group | homeless.without_slot;
+        for (int l = 0; l < width; ++l) {
+          without_group += homeless.without_group >> l & 1;
+          without_slot += homeless.without_slot >> l & 1;
+        }
       }
+    if (closing)
+      for (int g = lanes.layer_first(layer); g < lanes.layer_first(layer + 1); ++g)
+        close_ranks(lanes.groups(g));
   }
-  KOKKOS_FUNCTION bool last_slot_is_empty(const LaneGroup<Dim>& group) const {
-    const size_t end = lanes.end(group);
-    for (size_t e = end - lanes.width; e < end; ++e)
-      if (lanes.id(e) >= 0) return false;
-    return true;
-  }
-  KOKKOS_FUNCTION bool take_in(int n, const typename Leavers<Dim, Real, Device>::Head& head) const {
-    constexpr int width = Lanes<Real>::width;
-    const int x = head.cell[0] - lanes.box.first[0], lane = x % width;
-    int row = layer_of(head.cell) * lanes.rows_per_layer();
-    if constexpr (Dim == 3) row += head.cell[1] - lanes.box.first[1];
-    const int g = lanes.group_at(row * lanes.groups_per_row() + x / width);
-    if (g < 0) return false;
-    auto& group = lanes.groups(g);
-    for (int s = 0; s < group.capacity; ++s) {
-      const size_t e = static_cast<size_t>(group.first + s) * width + static_cast<size_t>(lane);
-      if (lanes.id(e) >= 0) continue;
-      group.slots = math::max(group.slots, s + 1);
-      for (int c = 0; c < lanes.columns(); ++c) *lanes.at(c, e) = leavers.data(n, c);
-      lanes.id(e) = head.id;
-      if (scatter) give_to_nodes(e, group, lane);
-      return true;
+  /// Empties the last slots into holes of those before, as far as there are any.
+  KOKKOS_FUNCTION void close_ranks(LaneGroup<Dim>& group) const {
+    for (; group.slots > 0; --group.slots) {
+      const int last = group.first + group.slots - 1;
+      LaneMask holes = 0;
+      for (int s = group.first; s < last; ++s) holes |= ~lanes.held(s);
+      LaneMask moving = lanes.held(last);
+      if ((moving & ~holes) != 0) return;
+      lanes.held(last) = 0;
+      for (int s = group.first; moving != 0; ++s) {
+        const LaneMask fits = moving & ~lanes.held(s);
+        if (fits == 0) continue;
+        const size_t from = static_cast<size_t>(last) * width, to = static_cast<size_t>(s) * width;
+        const auto mask = P::Mask::from_bits(fits);
+        for (int c = 0; c < lanes.columns(); ++c)
+          lanes.store(c, to, math::select(mask, lanes.load(c, from), lanes.load(c, to)));
+        for (size_t l = 0; l < width; ++l)
+          if (fits >> l & 1) {
+            lanes.id(to + l) = lanes.id(from + l);
+            lanes.id(from + l) = -1;
+          }
+        lanes.held(s) |= fits;
+        moving &= ~fits;
+      }
     }
-    return false;
+  }
+  /// The lanes whose particles go the same way as that of the first.
+  KOKKOS_FUNCTION static LaneMask with_the_first(const Head& head, LaneMask lanes) {
+    const int first = lowest(lanes);
+    LaneMask same = 0;
+    for (int l = first; l < width; ++l) {
+      if (!(lanes >> l & 1)) continue;
+      bool together = head.cell[l][0] - l == head.cell[first][0] - first;
+      for (int i = 1; i < Dim; ++i) together = together && head.cell[l][i] == head.cell[first][i];
+      if (together) same |= LaneMask(1) << l;
+    }
+    return same;
+  }
+  KOKKOS_FUNCTION static int lowest(LaneMask lanes) {
+    int l = 0;
+    while (!(lanes >> l & 1)) ++l;
+    return l;
+  }
+  /// Particles of these lanes of copy n, which go the same way.
+  KOKKOS_FUNCTION void take_in(int n, const Head& head, LaneMask from, Homeless& homeless) const {
+    constexpr LaneMask all = ~LaneMask(0) >> (32 - width);
+    for (int l = 0; l < width; ++l)
+      if ((from >> l & 1) && !within(head.cell[l])) homeless.without_group |= LaneMask(1) << l;
+    from &= ~homeless.without_group;
+    if (from == 0) return;
+    const int first = lowest(from);
+    const auto& cell = head.cell[first];
+    const int along = cell[0] - lanes.box.first[0] - (head.x * width + first);
+    int row = layer_of(cell) * lanes.rows_per_layer();
+    if constexpr (Dim == 3) row += cell[1] - lanes.box.first[1];
+    if (along == 0) {
+      put<0>(n, head, row, head.x, from, homeless);
+    } else if (along == 1) {
+      put<1>(n, head, row, head.x, from << 1 & all, homeless);
+      put<1>(n, head, row, head.x + 1, from >> (width - 1), homeless);
+    } else if (along == -1) {
+      put<-1>(n, head, row, head.x, from >> 1, homeless);
+      put<-1>(n, head, row, head.x - 1, from << (width - 1) & all, homeless);
+    } else {
+      homeless.without_group |= from;
+    }
+  }
+  /// Puts particles of copy n, `Along` lanes on, into lanes of a group.
+  template <int Along>
+  KOKKOS_FUNCTION void put(int n, const Head& head, int row, int x, LaneMask into, Homeless& homeless) const {
+    if (into == 0) return;
+    const int g = lanes.group_of(row, x);
+    if (g < 0) {
+      homeless.without_group |= lanes_before<Along>(into);
+      return;
+    }
+    auto& group = lanes.groups(g);
+    for (int s = 0; s < group.capacity && into != 0; ++s) {
+      auto& held = lanes.held(group.first + s);
+      const LaneMask fits = into & ~held;
+      if (fits == 0) continue;
+      const size_t entry = static_cast<size_t>(group.first + s) * width;
+      const auto mask = P::Mask::from_bits(fits);
+      const bool fresh = s >= group.slots;  // what such a slot holds is old
+      for (int c = 0; c < lanes.columns(); ++c) {
+        const P moved = rotated<Along>(P::load(&leavers.data(n, c * width)));
+        const P others = fresh ? P(c < Dim ? Real(0.5) : Real(0)) : lanes.load(c, entry);
+        lanes.store(c, entry, math::select(mask, moved, others));
+      }
+      held |= fits;
+      into &= ~fits;
+      group.slots = math::max(group.slots, s + 1);
+      for (int l = 0; l < width; ++l) {
+        if (!(fits >> l & 1)) continue;
+        const size_t e = entry + static_cast<size_t>(l);
+        lanes.id(e) = head.id[(l - Along + width) % width];
+        if (scatter) give_to_nodes(e, group, g, l);
+      }
+    }
+    homeless.without_slot |= lanes_before<Along>(into);
+  }
+  /// The lanes from which particles come to these.
+  template <int Along>
+  KOKKOS_FUNCTION static LaneMask lanes_before(LaneMask lanes) {
+    LaneMask before = 0;
+    for (int l = 0; l < width; ++l)
+      if (lanes >> l & 1) before |= LaneMask(1) << (l - Along + width) % width;
+    return before;
   }
 
   /// Adds to the lower and upper sums of the layer.
@@ -90,7 +192,7 @@ struct TakeInLeavers {
       return *nodes.at((upper ? nodes.upper_sums : nodes.lower_sums) + column, node);
     }
   };
-  KOKKOS_FUNCTION void give_to_nodes(size_t e, const LaneGroup<Dim>& group, int lane) const {
+  KOKKOS_FUNCTION void give_to_nodes(size_t e, const LaneGroup<Dim>& group, int g, int lane) const {
     Vector<Dim, Real> xi, v;
     SymmetricTensor<Dim, Real> sigma;
     for (int i = 0; i < Dim; ++i) {
@@ -104,6 +206,10 @@ struct TakeInLeavers {
     add_particle(shape, grid.map(lanes.cell(group, lane), xi).x, v, sigma, *lanes.at(lanes.mass_column, e),
                  *lanes.at(lanes.volume_column, e), virtual_stress, tractions, Vector<Dim, Real>::zero(),
                  Sink{nodes});
+    if (!lanes.one_sweep()) return;
+    auto M = CellMassMatrix<Dim, Real>::zero();
+    add_mass<Dim>(M, *lanes.at(lanes.mass_column, e), xi);
+    for (int k = 0; k < M.size; ++k) lanes.mass_matrix_at(g, k)[lane] += M[k];
   }
 };
 
@@ -114,20 +220,22 @@ struct UnpackHomeless {
   Particles<Dim, Real, Device> particles;
   UniformGrid<Dim, Real> grid;
   KOKKOS_FUNCTION void operator()(int k) const {
-    for (int n = leavers.first(k); n < leavers.first(k) + leavers.count(k); ++n) {
+    using Columns = CellLanes<Dim, Real, Device>;
+    leavers.for_each_homeless(k, [&](int n, int l) {
       const auto& head = leavers.head(n);
-      if (!head.homeless) continue;
+      const int id = head.id[l];
+      const auto number = [&](int column) { return leavers.data(n, column * leavers.width + l); };
       Vector<Dim, Real> xi;
-      for (int i = 0; i < Dim; ++i) xi[i] = leavers.data(n, i);
-      const auto x = grid.map(head.cell, xi).x;
+      for (int i = 0; i < Dim; ++i) xi[i] = number(Columns::xi_column + i);
+      const auto x = grid.map(head.cell[l], xi).x;
       for (int i = 0; i < Dim; ++i) {
-        particles.position(head.id, i) = x[i];
-        particles.velocity(head.id, i) = leavers.data(n, Dim + i);
+        particles.position(id, i) = x[i];
+        particles.velocity(id, i) = number(Columns::velocity_column + i);
       }
-      particles.volume(head.id) = leavers.data(n, 2 * Dim + 1);
+      particles.volume(id) = number(Columns::volume_column);
       for (int c = 0; c < particles.stress_size; ++c)
-        particles.cauchy_stress(head.id, c) = leavers.data(n, 2 * Dim + 2 + c);
-    }
+        particles.cauchy_stress(id, c) = number(Columns::stress_column + c);
+    });
   }
 };
 
@@ -148,8 +256,7 @@ struct CountLanes {
     const auto& group = before.groups(g);
     for (int l = 0; l < width; ++l) {
       int n = 0;
-      for (int s = 0; s < group.slots; ++s)
-        n += before.id(static_cast<size_t>(group.first + s) * width + static_cast<size_t>(l)) >= 0;
+      for (int s = group.first; s < group.first + group.slots; ++s) n += before.held(s) >> l & 1;
       if (n > 0) count(box.bin_of_cell(before.cell(group, l))) = n;
     }
   }
@@ -176,7 +283,8 @@ struct FindSources {
       int n = 0;
       for (int s = 0; s < group.slots; ++s) {
         const size_t e = static_cast<size_t>(group.first + s) * width + static_cast<size_t>(l);
-        if (before.id(e) >= 0) source(entry(before.cell(group, l), n++)) = static_cast<int>(e);
+        if (before.held(group.first + s) >> l & 1)
+          source(entry(before.cell(group, l), n++)) = static_cast<int>(e);
       }
     }
   }
@@ -193,30 +301,28 @@ struct PlaceHomeless {
   bool counting;
   KOKKOS_FUNCTION void operator()(int) const {
     for (int k = 0; k < find.before.layers(); ++k)
-      for (int n = leavers.first(k); n < leavers.first(k) + leavers.count(k); ++n) {
-        const auto& head = leavers.head(n);
-        if (!head.homeless) continue;
+      leavers.for_each_homeless(k, [&](int n, int l) {
+        const auto& cell = leavers.head(n).cell[l];
         if (counting) {
-          ++count(box.bin_of_cell(head.cell));
-          continue;
+          ++count(box.bin_of_cell(cell));
+          return;
         }
-        for (int s = 0;; ++s) {
-          const size_t e = find.entry(head.cell, s);
-          if (find.source(e) != -1) continue;
-          find.source(e) = -2 - n;
-          break;
-        }
-      }
+        int s = 0;
+        while (find.source(find.entry(cell, s)) != -1) ++s;
+        find.source(find.entry(cell, s)) = -2 - (n * leavers.width + l);
+      });
   }
 };
 
-/// The range of cells along an axis: groups of the lanes, then homeless leavers; a single work item.
+/// The range of cells that hold particles or will hold a homeless leaver, and which way those went that found
+/// no group; a single work item.
 template <int Dim, class Real, class Device>
 struct OccupiedRange {
   CellLanes<Dim, Real, Device> lanes;
   Leavers<Dim, Real, Device> leavers;
   Vector<Dim, int> grid_cells;
-  Kokkos::View<int*, Device> result;  ///< lowest and highest cell by axis, and the number of a lost particle
+  Kokkos::View<int*, Device> result;  ///< lowest and highest cell by axis, whether any went below or above,
+                                      ///< by axis, and the number of a lost particle
 
   KOKKOS_FUNCTION void include(const Vector<Dim, int>& cell) const {
     for (int i = 0; i < Dim; ++i) {
@@ -229,33 +335,55 @@ struct OccupiedRange {
     for (int i = 0; i < Dim; ++i) {
       result(2 * i) = grid_cells[i];
       result(2 * i + 1) = -1;
+      result(2 * Dim + 2 * i) = result(2 * Dim + 2 * i + 1) = 0;
     }
     int lost = -1;
     for (int g = 0; g < lanes.group_count; ++g) {
       const auto& group = lanes.groups(g);
+      const LaneMask cells = lanes.cells_with_particles(group);
       for (int l = 0; l < width; ++l)
-        for (int s = 0; s < group.slots; ++s)
-          if (lanes.id(static_cast<size_t>(group.first + s) * width + static_cast<size_t>(l)) >= 0) {
-            include(lanes.cell(group, l));
-            break;
-          }
+        if (cells >> l & 1) include(lanes.cell(group, l));
     }
     for (int k = 0; k < lanes.layers(); ++k)
-      for (int n = leavers.first(k); n < leavers.first(k) + leavers.count(k); ++n) {
-        const auto& head = leavers.head(n);
-        if (!head.homeless) continue;
+      leavers.for_each_homeless(k, [&](int n, int l) {
+        const auto& cell = leavers.head(n).cell[l];
+        const int id = leavers.head(n).id[l];
         bool inside = true;
-        for (int i = 0; i < Dim; ++i) inside = inside && head.cell[i] >= 0 && head.cell[i] < grid_cells[i];
-        if (inside)
-          include(head.cell);
-        else if (lost < 0 || head.id < lost)
-          lost = head.id;
-      }
-    result(2 * Dim) = lost;
+        for (int i = 0; i < Dim; ++i) inside = inside && cell[i] >= 0 && cell[i] < grid_cells[i];
+        if (inside) {
+          include(cell);
+          note_way(leavers.head(n), l);
+        } else if (lost < 0 || id < lost) {
+          lost = id;
+        }
+      });
+    result(4 * Dim) = lost;
+  }
+  KOKKOS_FUNCTION void note_way(const typename Leavers<Dim, Real, Device>::Head& head, int lane) const {
+    LaneGroup<Dim> from{};
+    from.x = head.x;
+    from.row = head.row;
+    const auto before = lanes.cell(from, lane);
+    for (int i = 0; i < Dim; ++i) {
+      if (head.cell[lane][i] < before[i]) result(2 * Dim + 2 * i) = 1;
+      if (head.cell[lane][i] > before[i]) result(2 * Dim + 2 * i + 1) = 1;
+    }
   }
 };
 
-/// One entry of one column of the new lanes.
+/// One column of a group of the lanes before: the slots in use, to where they cannot be overwritten.
+template <int Dim, class Real, class Device>
+struct SaveColumn {
+  CellLanes<Dim, Real, Device> before;
+  Kokkos::View<Real*, Device> column_before;
+  int column;
+  KOKKOS_FUNCTION void operator()(int g) const {
+    const auto& group = before.groups(g);
+    for (size_t e = before.begin(group); e < before.end(group); ++e) column_before(e) = *before.at(column, e);
+  }
+};
+
+/// One column of a group of the new lanes: the slots in use.
 template <int Dim, class Real, class Device>
 struct TakeColumn {
   using Ints = typename CellLanes<Dim, Real, Device>::Ints;
@@ -264,24 +392,36 @@ struct TakeColumn {
   Leavers<Dim, Real, Device> leavers;
   Ints source;
   int column;
-  KOKKOS_FUNCTION void operator()(int e) const {
-    const int from = source(e);
-    *lanes.at(column, static_cast<size_t>(e)) = from >= 0      ? before(from)
-                                                : from <= -2   ? leavers.data(-2 - from, column)
-                                                : column < Dim ? Real(0.5)
-                                                               : Real(0);
+  KOKKOS_FUNCTION void operator()(int g) const {
+    const auto& group = lanes.groups(g);
+    const Real ghost = column < Dim ? Real(0.5) : Real(0);
+    for (size_t e = lanes.begin(group); e < lanes.end(group); ++e) {
+      const int from = source(e), leaver = -2 - from, width = lanes.width;
+      *lanes.at(column, e) = from >= 0     ? before(from)
+                             : leaver >= 0 ? leavers.data(leaver / width, column * width + leaver % width)
+                                           : ghost;
+    }
   }
 };
 
+/// One slot of the new lanes: who is in it.
 template <int Dim, class Real, class Device>
 struct TakeIds {
-  using Ints = typename CellLanes<Dim, Real, Device>::Ints;
-  Ints before, id;
+  typename CellLanes<Dim, Real, Device>::Ints before;
+  CellLanes<Dim, Real, Device> lanes;
   Leavers<Dim, Real, Device> leavers;
-  Ints source;
-  KOKKOS_FUNCTION void operator()(int e) const {
-    const int from = source(e);
-    id(e) = from >= 0 ? before(from) : from <= -2 ? leavers.head(-2 - from).id : -1;
+  typename CellLanes<Dim, Real, Device>::Ints source;
+  KOKKOS_FUNCTION void operator()(int slot) const {
+    constexpr int width = Lanes<Real>::width;
+    LaneMask held = 0;
+    for (int l = 0; l < width; ++l) {
+      const int e = slot * width + l, from = source(e), leaver = -2 - from;
+      lanes.id(e) = from >= 0     ? before(from)
+                    : leaver >= 0 ? leavers.head(leaver / width).id[leaver % width]
+                                  : -1;
+      if (from != -1) held |= LaneMask(1) << l;
+    }
+    lanes.held(slot) = held;
   }
 };
 
@@ -292,21 +432,29 @@ template <class Exec, int Dim, class Real, class Device>
 int count_leavers(const Exec& exec, const LaneMemory<Dim, Real, Device>& m) {
   int count = 0;
   Kokkos::parallel_reduce("vsb::count_leavers", Kokkos::RangePolicy<Exec>(exec, 0, m.lanes.layers()),
-                          kernel::AddUp<Device>{m.leavers.count}, count);
+                          kernel::AddUp<Device>{m.leavers.lost}, count);
   exec.fence();
   return count;
 }
 
-/// Brings the leavers to their cells and, if asked to, adds them to the nodes. Returns how many found no
-/// place; then repack_lanes must follow. Waits for the device.
+/// How many particles found no place where they went: for want of a group there, or of a slot in it.
+struct HomelessCount {
+  int without_group = 0, without_slot = 0;
+  bool any() const { return without_group + without_slot > 0; }
+};
+
+/// Brings the leavers to their cells and, if asked to, adds them to the nodes (scatter) and empties last
+/// slots into holes (closing). Where some found no place, repack_lanes must follow. Waits for the device.
 template <class Exec, class Field, int Dim, class Real, class Device>
-int take_in_leavers(const Exec& exec, const LaneMemory<Dim, Real, Device>& m, const Field& virtual_stress,
-                    const BoundaryNodes<Device>& tractions, bool scatter) {
-  int homeless = 0;
-  Kokkos::parallel_reduce("vsb::take_in_leavers", Kokkos::RangePolicy<Exec>(exec, 0, m.lanes.layers()),
-                          kernel::TakeInLeavers<Dim, Real, Device, Field>{m.lanes, m.nodes, m.leavers, m.grid,
-                                                                          virtual_stress, tractions, scatter},
-                          homeless);
+HomelessCount take_in_leavers(const Exec& exec, const LaneMemory<Dim, Real, Device>& m,
+                              const Field& virtual_stress, const BoundaryNodes<Device>& tractions,
+                              bool scatter, bool closing) {
+  HomelessCount homeless;
+  Kokkos::parallel_reduce(
+      "vsb::take_in_leavers", Kokkos::RangePolicy<Exec>(exec, 0, m.lanes.layers()),
+      kernel::TakeInLeavers<Dim, Real, Device, Field>{m.lanes, m.nodes, m.leavers, m.grid, virtual_stress,
+                                                      tractions, scatter, closing},
+      homeless.without_group, homeless.without_slot);
   exec.fence();
   return homeless;
 }
@@ -319,26 +467,30 @@ void unpack_homeless(const Exec& exec, const LaneMemory<Dim, Real, Device>& m,
                        kernel::UnpackHomeless<Dim, Real, Device>{m.leavers, particles, m.grid});
 }
 
-/// Packs all particles anew, the leavers without a place among them. Returns -1, or the lowest number of a
-/// particle outside the grid, and then nothing is packed.
+/// Packs all particles anew, the leavers without a place among them. reach_out: with groups where these went.
+/// Returns -1, or the lowest number of a particle outside the grid, and then nothing is packed.
 template <class Exec, int Dim, class Real, class Device>
-int repack_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m) {
+int repack_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, bool reach_out = false) {
   using Cells = CellLanes<Dim, Real, Device>;
   using Ints = typename Cells::Ints;
   const Kokkos::RangePolicy<Exec> once(exec, 0, 1);
   const Cells before = m.lanes;
-  const Kokkos::View<int*, Device> range("vsb::occupied_range", 2 * Dim + 1);
+  const Kokkos::View<int*, Device> range("vsb::occupied_range", 4 * Dim + 1);
   Kokkos::parallel_for("vsb::occupied_range", once,
                        kernel::OccupiedRange<Dim, Real, Device>{before, m.leavers, m.grid.cells, range});
   exec.fence();
   const auto found = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), range);
-  if (found(2 * Dim) >= 0) return found(2 * Dim);
+  if (found(4 * Dim) >= 0) return found(4 * Dim);
   Vector<Dim, int> lowest, highest;
   for (int i = 0; i < Dim; ++i) {
     lowest[i] = found(static_cast<size_t>(2 * i));
     highest[i] = found(static_cast<size_t>(2 * i + 1));
+    const auto way = static_cast<size_t>(2 * Dim + 2 * i);
+    const int far = i == 0 ? 1 : math::min(math::max((highest[i] - lowest[i]) / 4, 2), 8);
+    if (reach_out && found(way) != 0) m.reach.below[i] = far;
+    if (reach_out && found(way + 1) != 0) m.reach.above[i] = far;
   }
-  const kernel::BoxBasis<Dim, Real> basis{m.grid, box_around<Dim, Real>(lowest, highest)};
+  const kernel::BoxBasis<Dim, Real> basis{m.grid, box_around<Dim, Real>(lowest, highest, m.reach)};
   const Ints count("vsb::particles_of_cell", static_cast<size_t>(basis.bin_count()));
   const Kokkos::RangePolicy<Exec> over_groups(exec, 0, before.group_count);
   Kokkos::parallel_for("vsb::count_lanes", over_groups,
@@ -347,10 +499,11 @@ int repack_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m) {
   Kokkos::parallel_for("vsb::count_homeless", once, place);
   m.lanes.data = {};  // only `before` holds it now
   m.lanes.id = {};
+  m.lanes.held = {};
   detail::number_lanes(exec, m, basis.box, count);
   auto& lanes = m.lanes;
   const int entries = lanes.slot_count * lanes.width;
-  const Ints source("vsb::source_of_entry", static_cast<size_t>(entries));
+  const Ints source = detail::scratch(m.source, static_cast<size_t>(entries));
   Kokkos::deep_copy(exec, source, -1);
   place.find = {before, lanes, source};
   place.counting = false;
@@ -360,20 +513,20 @@ int repack_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m) {
   if (fits) {
     lanes.data = before.data;
     lanes.id = Ints(Kokkos::view_alloc("vsb::lane_ids", Kokkos::WithoutInitializing), before.data.extent(0));
+    lanes.held =
+        decltype(lanes.held)("vsb::lanes_held", before.data.extent(0) / static_cast<size_t>(lanes.width));
   } else {
     detail::allocate_particle_columns(lanes, lanes.slot_count + lanes.slot_count / 16);
   }
-  const Kokkos::RangePolicy<Exec> over_entries(exec, 0, entries);
-  const auto entries_before = static_cast<size_t>(before.slot_count * before.width);
-  const Kokkos::View<Real*, Device> copy(
-      Kokkos::view_alloc("vsb::column_before", Kokkos::WithoutInitializing), entries_before);
+  const auto copy = detail::scratch(m.column_before, static_cast<size_t>(before.slot_count * before.width));
   for (int c = 0; c < lanes.columns(); ++c) {
-    Kokkos::deep_copy(exec, copy, Kokkos::subview(before.data, std::make_pair(size_t(0), entries_before), c));
-    Kokkos::parallel_for("vsb::take_column", over_entries,
+    Kokkos::parallel_for("vsb::save_column", over_groups,
+                         kernel::SaveColumn<Dim, Real, Device>{before, copy, c});
+    Kokkos::parallel_for("vsb::take_column", Kokkos::RangePolicy<Exec>(exec, 0, lanes.group_count),
                          kernel::TakeColumn<Dim, Real, Device>{copy, lanes, m.leavers, source, c});
   }
-  Kokkos::parallel_for("vsb::take_ids", over_entries,
-                       kernel::TakeIds<Dim, Real, Device>{before.id, lanes.id, m.leavers, source});
+  Kokkos::parallel_for("vsb::take_ids", Kokkos::RangePolicy<Exec>(exec, 0, lanes.slot_count),
+                       kernel::TakeIds<Dim, Real, Device>{before.id, lanes, m.leavers, source});
   exec.fence();
   detail::allocate_leavers(exec, m);
   return -1;

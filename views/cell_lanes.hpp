@@ -65,18 +65,29 @@ struct CellLanes {
                        volume_column = 2 * Dim + 1, stress_column = 2 * Dim + 2,
                        state_column = 2 * Dim + 2 + stress_size;
 
-  Columns data;  ///< [slot * width + lane][column]
-  Ints id;       ///< [slot * width + lane]: number of the particle; ghosts: -1
+  Columns data;                          ///< [slot * width + lane][column]
+  Ints id;                               ///< [slot * width + lane]: number of the particle; ghosts: -1
+  Kokkos::View<LaneMask*, Device> held;  ///< [slot]: bit l: lane l holds a particle
   Kokkos::View<LaneGroup<Dim>*, Device> groups;  ///< by layer, row and x
   Ints layer_first;                              ///< [layers + 1]: the groups of a layer
   Ints plane_first;                              ///< [layers + 2]: the nodes of a plane
   Ints group_at;  ///< [row of cells][groups per row]: number, -1 where there is none
   Ints chunk_at;  ///< [row of nodes][groups per row + 1]: `width` nodes side by side
+  Kokkos::View<Real*, Device>
+      mass_matrices;  ///< [(group * 3^Dim + number) * width + lane], kg, numbers as in
+                      ///< physics/cell_mass_matrix.hpp; empty: steps take two sweeps
   CellBox<Dim> box;
   int state_size = 0;  ///< numbers of material state per particle
   int group_count = 0, slot_count = 0, node_count = 0;
   int particle_count = 0;
 
+  static constexpr int mass_matrix_size = Dim == 1 ? 3 : Dim == 2 ? 9 : 27;
+  /// Whether steps look at the particles once, and re-map by the mass matrices of the cells.
+  KOKKOS_FUNCTION bool one_sweep() const { return mass_matrices.size() > 0; }
+  KOKKOS_FORCEINLINE_FUNCTION Real* mass_matrix_at(int group, int number) const {
+    return mass_matrices.data() +
+           (static_cast<size_t>(group) * mass_matrix_size + static_cast<size_t>(number)) * width;
+  }
   KOKKOS_FUNCTION int groups_per_row() const { return (box.cells[0] + width - 1) / width; }
   KOKKOS_FUNCTION int layers() const { return Dim == 1 ? 1 : box.cells[Dim - 1]; }
   KOKKOS_FUNCTION int rows_per_layer() const { return Dim == 3 ? box.cells[1 % Dim] : 1; }
@@ -135,7 +146,17 @@ struct CellLanes {
     static_for<stress_size>([&](auto c) VSB_UNROLLED { s[c] = load(stress_column + c, entry); });
     return s;
   }
-  /// Makes an entry a ghost.
+  /// The number of a group, or -1 where there is none; x in groups.
+  KOKKOS_FUNCTION int group_of(int row, int x) const {
+    return x < 0 || x >= groups_per_row() ? -1 : group_at(row * groups_per_row() + x);
+  }
+  /// The lanes in which a group holds particles.
+  KOKKOS_FUNCTION LaneMask cells_with_particles(const LaneGroup<Dim>& group) const {
+    LaneMask lanes = 0;
+    for (int s = group.first; s < group.first + group.slots; ++s) lanes |= held(s);
+    return lanes;
+  }
+  /// Makes an entry a ghost; the mask of its slot is left to the caller.
   KOKKOS_FUNCTION void clear(size_t entry) const {
     for (int c = 0; c < columns(); ++c) *at(c, entry) = c < Dim ? Real(0.5) : Real(0);
     id(entry) = -1;
@@ -162,18 +183,35 @@ struct LaneNodes {
   KOKKOS_FORCEINLINE_FUNCTION P load(int column, int node) const { return P::load(at(column, node)); }
 };
 
-/// Particles on their way to another cell, in the order in which their layer lost them.
+/// Particles on their way to another cell: copies of the slots that lost some, in the order in which their
+/// layer came to them.
 template <int Dim, class Real, class Device>
 struct Leavers {
+  static constexpr int width = Lanes<Real>::width;
   struct Head {
-    int id;
-    Vector<Dim, int> cell;  ///< where to
-    bool homeless;          ///< no place there
+    int x, row;                    ///< of the group they left
+    LaneMask to[3];                ///< lanes whose particle goes to the layer below, the same, the one above
+    LaneMask far;                  ///< lanes whose particle goes farther
+    LaneMask homeless[3];          ///< of `to`, those that found no place; of `far`, with the same layer
+    int id[width];                 ///< of the particle in a lane
+    Vector<Dim, int> cell[width];  ///< where to; only of lanes that lost their particle
+    KOKKOS_FUNCTION LaneMask without_place() const { return homeless[0] | homeless[1] | homeless[2]; }
   };
-  Kokkos::View<Real**, Kokkos::LayoutRight, Device> data;  ///< [entry][column of CellLanes]
-  Kokkos::View<Head*, Device> head;
-  Kokkos::View<int*, Device> first;  ///< [layer]: first entry of the list of the layer
-  Kokkos::View<int*, Device> count;  ///< [layer]
+  Kokkos::View<Real**, Kokkos::LayoutRight, Device> data;  ///< [copy][column of CellLanes * width + lane]
+  Kokkos::View<Head*, Device> head;                        ///< [copy]
+  Kokkos::View<int*, Device> first;                        ///< [layer]: first copy of the list of the layer
+  Kokkos::View<int*, Device> count;                        ///< [layer]: copies
+  Kokkos::View<int*, Device> lost;                         ///< [layer]: particles in them
+
+  /// Calls work(copy, lane) for all particles without a place, in order.
+  template <class Work>
+  KOKKOS_FUNCTION void for_each_homeless(int layer, const Work& work) const {
+    for (int n = first(layer); n < first(layer) + count(layer); ++n) {
+      const LaneMask lanes = head(n).without_place();
+      for (int l = 0; l < width; ++l)
+        if (lanes >> l & 1) work(n, l);
+    }
+  }
 };
 
 }  // namespace vsb

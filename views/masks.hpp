@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Bit masks that nodes carry.
+/// Bit masks that nodes and lanes carry.
 #pragma once
 
 #include <cstdint>
@@ -12,5 +12,8 @@ using TractionMask = std::uint32_t;
 
 /// Bit i says that velocity component i is prescribed (zero) at a node.
 using ComponentMask = std::uint8_t;
+
+/// Bit l says something of lane l of a pack.
+using LaneMask = std::uint32_t;
 
 }  // namespace vsb

@@ -61,6 +61,20 @@ KOKKOS_FORCEINLINE_FUNCTION bool any(PackMask<T, W> mask) {
   return sum != 0;
 }
 
+/// Bit l: whether lane l is true.
+template <class T, int W>
+KOKKOS_FORCEINLINE_FUNCTION std::uint32_t bits_of(PackMask<T, W> mask) {
+#if defined(VSB_PACK_FMA)
+  if constexpr (sizeof(T) == 8 && W == 4)
+    return static_cast<std::uint32_t>(_mm256_movemask_pd(reinterpret_cast<__m256d>(mask.v)));
+  if constexpr (sizeof(T) == 4 && W == 8)
+    return static_cast<std::uint32_t>(_mm256_movemask_ps(reinterpret_cast<__m256>(mask.v)));
+#endif
+  std::uint32_t bits = 0;
+  for (int l = 0; l < W; ++l) bits |= mask.v[l] != 0 ? std::uint32_t(1) << l : 0;
+  return bits;
+}
+
 template <class T, int W>
 struct Pack {
   static constexpr int width = W;
@@ -157,6 +171,19 @@ KOKKOS_FORCEINLINE_FUNCTION Pack<T, W> shift_in(Pack<T, W> a, Pack<T, W> b,
 template <class T, int W>
 KOKKOS_FORCEINLINE_FUNCTION Pack<T, W> shift_in(Pack<T, W> before, Pack<T, W> p) {
   return detail::shift_in(before, p, std::make_integer_sequence<int, W>{});
+}
+
+namespace detail {
+template <int By, class T, int W, int... L>
+KOKKOS_FORCEINLINE_FUNCTION Pack<T, W> rotated(Pack<T, W> p, std::integer_sequence<int, L...>) {
+  return typename Pack<T, W>::Native(__builtin_shufflevector(p.v, p.v, ((L - By + W) % W)...));
+}
+}  // namespace detail
+
+/// Lane l + By is lane l of p; what goes beyond one end comes in at the other.
+template <int By, class T, int W>
+KOKKOS_FORCEINLINE_FUNCTION Pack<T, W> rotated(Pack<T, W> p) {
+  return detail::rotated<By>(p, std::make_integer_sequence<int, W>{});
 }
 
 /// p in the lanes whose bit is set, zero in the others.

@@ -113,8 +113,9 @@ size_t LaneEngine<Dim, Real>::bytes() const {
   const auto& l = state_.memory.lanes;
   const auto& n = state_.memory.nodes;
   const auto& b = state_.boundary;
-  return bytes(l.data, l.id, l.groups, l.layer_first, l.plane_first, l.group_at, l.chunk_at, n.data, n.fixed,
-               b.bits.occupied, b.bits.exterior, b.bits.boundary, b.marked, b.active, b.tractions);
+  return bytes(l.data, l.id, l.held, l.mass_matrices, l.groups, l.layer_first, l.plane_first, l.group_at,
+               l.chunk_at, n.data, n.fixed, b.bits.occupied, b.bits.exterior, b.bits.boundary, b.marked,
+               b.active, b.tractions);
 }
 
 template <int Dim, class Real>
@@ -130,9 +131,11 @@ std::vector<unsigned char> LaneEngine<Dim, Real>::save() const {
   w.number(l.slot_count);
   w.number(l.node_count);
   w.number(m.slack);
-  w.number(m.reserve);
+  w.number(m.reach);
   w.number(state_.steps_since_repacked);
+  w.number(state_.leavers);
   w.number(prepared_);
+  w.number(l.one_sweep());
   const auto groups = detail::on_host(l.groups);
   std::vector<GroupShape> shape;
   for (int g = 0; g < l.group_count; ++g) {
@@ -145,6 +148,7 @@ std::vector<unsigned char> LaneEngine<Dim, Real>::save() const {
   for (int c = 0; c < l.columns(); ++c) w.array(&data(0, static_cast<size_t>(c)), entries);
   const auto sums = detail::on_host(m.nodes.data);
   for (int c = 0; c < 2 * m.nodes.sum_columns; ++c) w.array(&sums(0, static_cast<size_t>(c)), nodes);
+  w.array(detail::on_host(l.mass_matrices).data(), l.mass_matrices.size());
   return std::move(w.result);
 }
 
@@ -152,21 +156,24 @@ template <int Dim, class Real>
 bool LaneEngine<Dim, Real>::restore(const std::vector<unsigned char>& saved) {
   detail::Reader r(saved);
   auto& m = state_.memory;
-  int width = 0, groups = 0, slots = 0, nodes = 0, slack = 0, reserve = 0, since = 0;
+  int width = 0, groups = 0, slots = 0, nodes = 0, slack = 0, since = 0, leavers = 0;
   CellBox<Dim> box;
-  bool prepared = false;
+  Reach<Dim> reach;
+  bool prepared = false, one_sweep = false;
   if (!r.number(width) || width != m.lanes.width || !r.number(box) || !r.number(groups) || !r.number(slots) ||
-      !r.number(nodes) || !r.number(slack) || !r.number(reserve) || !r.number(since) || !r.number(prepared) ||
-      groups < 0 || slots < 0 || nodes < 0)
+      !r.number(nodes) || !r.number(slack) || !r.number(reach) || !r.number(since) || !r.number(leavers) ||
+      !r.number(prepared) || !r.number(one_sweep) || groups < 0 || slots < 0 || nodes < 0)
     return false;
   if (static_cast<size_t>(groups) > saved.size()) return false;
   std::vector<GroupShape> shape(static_cast<size_t>(groups));
   if (!r.array(shape.data(), shape.size())) return false;
   if (!lay_out_lanes(exec_, m, box, shape)) return false;
   if (m.lanes.slot_count != slots || m.lanes.node_count != nodes) return false;
+  set_sweeps(m.lanes, one_sweep);
   m.slack = slack;
-  m.reserve = reserve;
+  m.reach = reach;
   state_.steps_since_repacked = since;
+  state_.leavers = leavers;
   auto& l = m.lanes;
   const size_t entries = static_cast<size_t>(slots) * l.width;
   const auto id = Kokkos::create_mirror_view(l.id);
@@ -180,6 +187,13 @@ bool LaneEngine<Dim, Real>::restore(const std::vector<unsigned char>& saved) {
   for (const bool found : seen)
     if (!found) return false;
   Kokkos::deep_copy(l.id, id);
+  const auto held = Kokkos::create_mirror_view(l.held);
+  for (size_t slot = 0; slot < static_cast<size_t>(slots); ++slot) {
+    held(slot) = 0;
+    for (int lane = 0; lane < l.width; ++lane)
+      if (id(slot * l.width + static_cast<size_t>(lane)) >= 0) held(slot) |= LaneMask(1) << lane;
+  }
+  Kokkos::deep_copy(l.held, held);
   const auto data = Kokkos::create_mirror_view(l.data);
   for (int c = 0; c < l.columns(); ++c)
     if (!r.array(&data(0, static_cast<size_t>(c)), entries)) return false;
@@ -188,6 +202,9 @@ bool LaneEngine<Dim, Real>::restore(const std::vector<unsigned char>& saved) {
   for (int c = 0; c < 2 * m.nodes.sum_columns; ++c)
     if (!r.array(&sums(0, static_cast<size_t>(c)), static_cast<size_t>(nodes))) return false;
   Kokkos::deep_copy(m.nodes.data, sums);
+  const auto moments = Kokkos::create_mirror_view(l.mass_matrices);
+  if (!r.array(moments.data(), moments.size())) return false;
+  Kokkos::deep_copy(l.mass_matrices, moments);
   if (!r.at_end()) return false;
   mark_packed_lanes(exec_, state_);
   prepared_ = prepared;

@@ -156,13 +156,20 @@ TEMPLATE_TEST_CASE_SIG("a lane that is not kept is zero whatever it holds", "", 
   CHECK(wrong(math::select(PackMask<T, W>::from_bits(0), nan, one), [](int) { return T(1); }) == 0);
 }
 
-TEMPLATE_TEST_CASE_SIG("shift_in, abs, exp", "", ((typename T, int W), T, W), (double, 4), (float, 8),
-                       (double, 2), (float, 4)) {
+TEMPLATE_TEST_CASE_SIG("shift_in, rotated, bits_of, abs, exp", "", ((typename T, int W), T, W), (double, 4),
+                       (float, 8), (double, 2), (float, 4)) {
   Draw<T, W> draw;
   int bad = 0;
   for (int n = 0; n < 50; ++n) {
     const auto before = draw(), p = draw(-20, 20);
     bad += wrong(shift_in(before, p), [&](int l) { return l == 0 ? before[W - 1] : p[l - 1]; });
+    bad += wrong(rotated<1>(p), [&](int l) { return p[(l + W - 1) % W]; });
+    bad += wrong(rotated<-1>(p), [&](int l) { return p[(l + 1) % W]; });
+    bad += wrong(rotated<0>(p), [&](int l) { return p[l]; });
+    std::uint32_t positive = 0;
+    for (int l = 0; l < W; ++l)
+      if (p[l] > T(0)) positive |= std::uint32_t(1) << l;
+    bad += bits_of(p > Pack<T, W>(T(0))) != positive;
     bad += wrong(math::abs(p), [&](int l) { return std::abs(p[l]); });
     bad += wrong(math::exp(p), [&](int l) { return std::exp(p[l]); });
   }
