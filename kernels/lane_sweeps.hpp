@@ -13,6 +13,7 @@
 
 #include <vsb/kernels/lane_tractions.hpp>
 #include <vsb/physics/kinematics.hpp>
+#include <vsb/physics/next_cell.hpp>
 
 namespace vsb {
 
@@ -150,38 +151,13 @@ struct MoveGroup {
       auto cell = lanes.cell(group, l);
       Vector<Dim, Real> xi;
       for (int i = 0; i < Dim; ++i) xi[i] = *lanes.at(lanes.xi_column + i, e);
-      if (!to_next_cell(cell, xi)) continue;
+      if (!to_next_cell(grid, cell, xi)) continue;
       const int n = leavers.first(layer) + leavers.count(layer)++;
       for (int c = 0; c < lanes.columns(); ++c) leavers.data(n, c) = *lanes.at(c, e);
       for (int i = 0; i < Dim; ++i) leavers.data(n, lanes.xi_column + i) = xi[i];
       leavers.head(n) = {lanes.id(e), cell, false};
       lanes.clear(e);
     }
-  }
-  /// The cell in which a particle is and its place there; whether that is another cell than before. Round-off
-  /// at a face of the grid counts as inside, as everywhere (UniformGrid::contains).
-  KOKKOS_FUNCTION bool to_next_cell(Vector<Dim, int>& cell, Vector<Dim, Real>& xi) const {
-    constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
-    bool out = false;
-    for (int i = 0; i < Dim; ++i) {
-      const Real round_off = 16 * static_cast<Real>(grid.cells[i]) * epsilon;
-      if (xi[i] >= Real(0) && xi[i] < Real(1)) continue;
-      if (cell[i] == 0 && xi[i] < Real(0) && xi[i] >= -round_off) continue;
-      if (cell[i] == grid.cells[i] - 1 && xi[i] >= Real(1) && xi[i] <= Real(1) + round_off) continue;
-      out = true;
-      const Real whole = math::floor(xi[i]);
-      if (!(math::abs(whole) < Real(1 << 20))) {
-        cell[i] = -1;  // not finite, or nowhere near: outside the grid
-        continue;
-      }
-      cell[i] += static_cast<int>(whole);
-      xi[i] -= whole;
-      if (xi[i] >= Real(1)) {  // from just below zero
-        xi[i] = Real(0);
-        ++cell[i];
-      }
-    }
-    return out;
   }
 };
 
