@@ -129,8 +129,8 @@ struct MoveLaneSurfacePoints {
     auto cell = points.cell_of(b);
     auto xi = points.xi_of(b);
     Matrix<Dim, Real> L;  // dt L
-    static_for<Dim>([&](auto i) {
-      static_for<Dim>([&](auto j) {
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
+      static_for<Dim>([&](auto j) VSB_UNROLLED {
         L(i, j) = derivative_at<j, Dim>(u[i], xi) * (grid.inverse_spacing[j] * grid.spacing[0]);
       });
     });

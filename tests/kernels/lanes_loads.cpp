@@ -15,30 +15,31 @@ namespace {
 template <int Dim, class Real>
 using Uniform = UniformVirtualStress<Dim, Real>;
 
-/// Two tractions that grow by the step.
+/// Three tractions that grow by the step.
 template <int Dim, class Real>
-Uniform<Dim, Real> two_stresses(Real amplitude, int n) {
+Uniform<Dim, Real> three_stresses(Real amplitude, int n) {
   constexpr double values[6] = {-2, 1, 0.5, 0.7, -0.4, 0.3};
   Uniform<Dim, Real> f;
-  f.count = 2;
+  f.count = 3;
   f.stress[0] = pressure_stress<Dim>(Real(2));
-  for (int c = 0; c < f.stress[1].size; ++c) f.stress[1][c] = static_cast<Real>(values[c]);
-  for (int k = 0; k < 2; ++k) f.stress[k] = amplitude * static_cast<Real>(0.01 * (n + 20)) * f.stress[k];
+  f.stress[1] = pressure_stress<Dim>(Real(-1));
+  for (int c = 0; c < f.stress[2].size; ++c) f.stress[2][c] = static_cast<Real>(values[c]);
+  for (int k = 0; k < 3; ++k) f.stress[k] = amplitude * static_cast<Real>(0.01 * (n + 20)) * f.stress[k];
   return f;
 }
 
-/// The same two, and a blend between two pressures about the cavity of BothEngines' body in the place of the
-/// second one.
+/// The same, but in the place of the second one a blend between two pressures about the cavity of
+/// BothEngines' body.
 template <int Dim, class Real>
-TractionFields<Dim, Real> two_fields(const UniformGrid<Dim, Real>& grid, Real amplitude, int n) {
+TractionFields<Dim, Real> three_fields(const UniformGrid<Dim, Real>& grid, Real amplitude, int n) {
   TractionFields<Dim, Real> f;
-  const auto uniform = two_stresses<Dim, Real>(amplitude, n);
+  const auto uniform = three_stresses<Dim, Real>(amplitude, n);
   Vector<Dim, Real> centre, across;
   for (int i = 0; i < Dim; ++i) {
     centre[i] = grid.lower[i] + Real(6.7) * grid.spacing[i];
     across[i] = Real(1);
   }
-  f.count = 2;
+  f.count = 3;
   f.field[0] = UniformStress<Dim, Real>{uniform.stress[0]};
   f.field[1] = RadialBlend<Dim, Real>{centre,
                                       across,
@@ -46,13 +47,14 @@ TractionFields<Dim, Real> two_fields(const UniformGrid<Dim, Real>& grid, Real am
                                       3 * grid.spacing[0],
                                       pressure_stress<Dim>(amplitude),
                                       pressure_stress<Dim>(-amplitude)};
-  f.factor[0] = Real(1);
+  f.field[2] = UniformStress<Dim, Real>{uniform.stress[2]};
+  f.factor[0] = f.factor[2] = Real(1);
   f.factor[1] = static_cast<Real>(0.01 * (n + 20));
   return f;
 }
 
 /// `count` points of every carrier: boundary particles near particles and a few in void cells far away,
-/// material points, and nodes; under traction 0, 1 or both.
+/// material points, and nodes; under one or two of three tractions.
 ///
 /// Not in void cells beside particles: a node there may have next to no mass, and cell lanes find its
 /// velocity to epsilon of what a cell has (see BothEngines), which a boundary particle feels in full, but no
@@ -84,7 +86,7 @@ SurfacePoints<Dim, Real, Device> points_of_all_kinds(const BothEngines<Dim, Real
       if (far_away && i == 0) x(b, i) = grid.lower[i] + h * random.draw<Real>(28, 37);
       a(b, i) = random.draw<Real>(-0.02, 0.02);
     }
-    tractions(b) = 1u + static_cast<unsigned>(b % 5 % 3);
+    tractions(b) = 1u + static_cast<unsigned>(b % 5);
   }
   Kokkos::deep_copy(points.position, x);
   Kokkos::deep_copy(points.area, a);
@@ -96,15 +98,15 @@ SurfacePoints<Dim, Real, Device> points_of_all_kinds(const BothEngines<Dim, Real
 template <int Dim, class Real>
 using Original = OriginalVirtualStress<Uniform<Dim, Real>, UniformGrid<Dim, Real>, Device>;
 
-/// Traction 1 by the original method, traction 0 by the modified one, at nodes of three kinds.
+/// Tractions 1 and 2 by the original method, traction 0 by the modified one, at nodes of eight kinds.
 template <int Dim, class Real>
 void declare_both_methods(BothEngines<Dim, Real>& engines) {
   engines.declare([](const Vector<Dim, int>& ijk) {
     TractionMask mask = 0;
-    for (int i = 0; i < Dim; ++i) mask |= static_cast<TractionMask>((ijk[i] + i) / 3 % 3);
+    for (int i = 0; i < Dim; ++i) mask ^= static_cast<TractionMask>((ijk[i] + i) / 2 % 8);
     return mask;
   });
-  engines.lanes.original = 2;
+  engines.lanes.original = 6;
 }
 
 /// The bits of 60 steps of a moving body under loads of all these kinds.
@@ -113,13 +115,13 @@ std::uint64_t state_hash() {
   BothEngines<Dim, Real> engines({false, 5});
   declare_both_methods(engines);
   engines.surface = points_of_all_kinds(engines, 100);
-  const auto f = two_stresses<Dim, Real>(engines.amplitude, 100);
+  const auto f = three_stresses<Dim, Real>(engines.amplitude, 100);
   auto modified = f;
-  modified.stress[1] = SymmetricTensor<Dim, Real>::zero();
+  modified.stress[1] = modified.stress[2] = SymmetricTensor<Dim, Real>::zero();
   engines.run_with_loads(
       elastic<Dim, Real>(), DeterminantVolume{},
       [&](int) {
-        return Original<Dim, Real>{f, engines.basis.grid, engines.state.occupancy.cells, 2, 2};
+        return Original<Dim, Real>{f, engines.basis.grid, engines.state.occupancy.cells, 6, 2};
       },
       [&](int) { return modified; }, [&](int) { return add_lane_loads(Exec(), engines.lanes, f); }, 60);
   REQUIRE(engines.moved > 20);
@@ -145,7 +147,7 @@ TEMPLATE_TEST_CASE_SIG("boundary particles, material points and nodes under trac
     engines.surface = points_of_all_kinds(engines, 100);
     const auto cells_before = read(pack_surface_points(Exec(), engines.surface, engines.basis.grid).cell);
     const auto field_at = [&](int n) {
-      return two_fields<Dim, Real>(engines.basis.grid, engines.amplitude, n);
+      return three_fields<Dim, Real>(engines.basis.grid, engines.amplitude, n);
     };
     engines.run_with_loads(
         elastic<Dim, Real>(), DeterminantVolume{},
@@ -201,21 +203,21 @@ TEMPLATE_TEST_CASE_SIG("the original method beside the modified one", "",
           [&](int n) {
             using Field = std::decay_t<decltype(field_at(0))>;
             return OriginalVirtualStress<Field, UniformGrid<Dim, Real>, Device>{
-                field_at(n), engines.basis.grid, engines.state.occupancy.cells, 2, 2};
+                field_at(n), engines.basis.grid, engines.state.occupancy.cells, 6, 2};
           },
           [&](int n) { return without_original(field_at(n)); },
           [&](int n) { return add_lane_loads(Exec(), engines.lanes, field_at(n)); });
     };
     if (uniform)
-      run([&](int n) { return two_stresses<Dim, Real>(engines.amplitude, n); },
+      run([&](int n) { return three_stresses<Dim, Real>(engines.amplitude, n); },
           [](auto f) {
-            f.stress[1] = SymmetricTensor<Dim, Real>::zero();
+            f.stress[1] = f.stress[2] = SymmetricTensor<Dim, Real>::zero();
             return f;
           });
     else
-      run([&](int n) { return two_fields<Dim, Real>(engines.basis.grid, engines.amplitude, n); },
+      run([&](int n) { return three_fields<Dim, Real>(engines.basis.grid, engines.amplitude, n); },
           [](auto f) {
-            f.factor[1] = Real(0);
+            f.factor[1] = f.factor[2] = Real(0);
             return f;
           });
     CAPTURE(uniform, engines.moved);
@@ -229,7 +231,7 @@ TEMPLATE_TEST_CASE_SIG("the original method alone keeps up the boundary", "", ((
   BothEngines<Dim, double> engines({false, 1.5});
   engines.declare_everywhere(1);
   engines.lanes.original = 1;
-  const auto field_at = [](int n) { return two_stresses<Dim, double>(1, n); };
+  const auto field_at = [](int n) { return three_stresses<Dim, double>(1, n); };
   engines.run_with_loads(
       elastic<Dim, double>(), DeterminantVolume{},
       [&](int n) {
@@ -253,11 +255,11 @@ TEST_CASE("a surface point that leaves the grid is reported") {
   lanes.surface = points;
   prepare_lane_step(Exec(), lanes, NoVirtualStress{});
   const auto before = read(lanes.memory.nodes.data);
-  CHECK(add_lane_loads(Exec(), lanes, two_stresses<2, double>(1, 0)) == 4);
+  CHECK(add_lane_loads(Exec(), lanes, three_stresses<2, double>(1, 0)) == 4);
   const auto after = read(lanes.memory.nodes.data);
   CHECK(std::equal(before.data(), before.data() + before.span(), after.data()));
   edit(points.cell, [&](const auto& cell) { cell(4, 1) = grid.cells[1] - 1; });  // outside the box: no load
-  CHECK(add_lane_loads(Exec(), lanes, two_stresses<2, double>(1, 0)) == -1);
+  CHECK(add_lane_loads(Exec(), lanes, three_stresses<2, double>(1, 0)) == -1);
 }
 
 TEST_CASE("print state hashes of loads on cell lanes", "[.][state_hashes]") {  // run by kernels/same_bits.py
