@@ -136,6 +136,7 @@ void print(const Row& row) {
                {"null", "pressure", "pressure, marked", "pressure, marked, summed anew", "tensor",
                 "tensor, marked", "affine", "affine, marked", "function", "function, marked"},
                "end face", "all faces");
+  print_extras(r, "extra by other impositions", {"MP", "BP", "ORIG"}, "end face", "all faces");
   if (r.has("kernels base ns")) {
     std::printf(
         "  particle kernels: base %.1f ns (10 %% quantile %.1f); engine %.1f times faster, with pressure "

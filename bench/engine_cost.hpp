@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// What a step on cell lanes costs, and what the virtual stress adds.
+/// What a step on cell lanes costs, and what the virtual stress adds, or another way of imposing a traction.
 #pragma once
 
 #include "cost_cases.hpp"
 #include "cost_record.hpp"
 #include "lane_checks.hpp"
 #include "rounds.hpp"
+#include "surface_scene.hpp"
 
+#include <vsb/kernels/lane_loads.hpp>
 #include <vsb/physics/traction_fields.hpp>
 
 namespace vsb::bench {
@@ -52,10 +54,41 @@ void mark_anew(Lane<3, Real>& s) {
   mark_lanes(Exec(), s.memory.lanes, s.memory.grid.cells, b, false);
 }
 
-/// Base and the fields against it, with the traction where the column has it.
+/// The column's loaded material points and its boundary particles.
+template <class Real>
+struct CostPoints {
+  LaneSurfacePoints<3, Real, Device> material, boundary;
+
+  /// The particles of `column` may be gone: they are made anew.
+  explicit CostPoints(const Column<3, Real>& column) {
+    const auto whole = make_column<3, Real>(column.size, column.load, column.axis);
+    const auto pack = [&](Points kind) {
+      return pack_surface_points(Exec(), make_surface(whole, kind), column.basis.grid);
+    };
+    material = pack(Points::material);
+    boundary = pack(Points::boundary);
+  }
+};
+
+/// One step with the column's pressure on surface points, or by the original method (`original` = 1).
+template <class Real>
+void step_with_loads(const Column<3, Real>& column, Lane<3, Real>& s,
+                     LaneSurfacePoints<3, Real, Device>& points, TractionMask original) {
+  std::swap(s.surface, points);
+  s.original = original;
+  step(column, s, NoVirtualStress{});
+  if (add_lane_loads(Exec(), s, column.virtual_stress) >= 0)
+    throw std::runtime_error("a surface point of the column is outside its grid");
+  s.original = 0;
+  std::swap(s.surface, points);
+}
+
+/// Base and the fields against it, with the traction where the column has it; and the other ways of imposing
+/// the pressure.
 template <class Real>
 Rounds measure_fields(const Column<3, Real>& column, Lane<3, Real>& s, int rounds) {
   const CostFields<Real> fields(column);
+  CostPoints<Real> points(column);
   std::vector<Variant> variants;
   const auto add = [&](const std::string& name, const auto& field) {
     variants.push_back({name, [&] { step(column, s, field); }});
@@ -73,6 +106,10 @@ Rounds measure_fields(const Column<3, Real>& column, Lane<3, Real>& s, int round
   add("tensor", fields.tensor);
   add("affine", fields.affine);
   add("function", fields.function);
+  LaneSurfacePoints<3, Real, Device> none;
+  variants.push_back({"MP", [&] { step_with_loads(column, s, points.material, 0); }});
+  variants.push_back({"BP", [&] { step_with_loads(column, s, points.boundary, 0); }});
+  variants.push_back({"ORIG", [&] { step_with_loads(column, s, none, 1); }});
   return measure_in_turns({"base", [&] { step(column, s, NoVirtualStress{}); }}, variants, rounds);
 }
 

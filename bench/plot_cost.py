@@ -12,14 +12,14 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 # name | key of the paper's row | key of what was measured
-METHODS = [("material points", "MP %", "kernels, end face: MP %"),
-           ("boundary particles", "BP %", "kernels, end face: BP %"),
-           ("original virtual stress", "ORIG %", "kernels, end face: ORIG %"),
-           ("modified, particle kernels", "MOD %", "kernels, end face: MOD %"),
-           ("modified, cell lanes", "MOD %", "end face: pressure %"),
-           ("modified, cell lanes, all faces", None, "all faces: pressure %"),
-           ("the same, affine", None, "all faces: affine %"),
-           ("the same, any function", None, "all faces: function %"),
+METHODS = [("material points", "MP %", "end face: MP %"),
+           ("boundary particles", "BP %", "end face: BP %"),
+           ("original virtual stress", "ORIG %", "end face: ORIG %"),
+           ("modified, with particle kernels", "MOD %", "kernels, end face: MOD %"),
+           ("modified virtual stress", "MOD %", "end face: pressure %"),
+           ("the same, all faces", None, "all faces: pressure %"),
+           ("all faces, affine", None, "all faces: affine %"),
+           ("all faces, any function", None, "all faces: function %"),
            ("nothing (null test)", None, "end face: null %")]
 
 

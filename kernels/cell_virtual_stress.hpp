@@ -10,8 +10,7 @@
 #pragma once
 
 #include <vsb/kernels/mark_boundary_nodes.hpp>
-#include <vsb/physics/gauss_points.hpp>
-#include <vsb/physics/virtual_stress.hpp>
+#include <vsb/physics/whole_cell.hpp>
 
 namespace vsb {
 
@@ -55,6 +54,7 @@ struct SubtractCellStress {
     const TractionMask chi = boundary(I) & virtual_stress.original;
     if (chi == 0) return;
     const auto at = basis.grid.node_ijk(I);
+    const GaussPoints<Real> gauss(virtual_stress.gauss_points);
     auto f = Vector<Dim, Real>::zero();
     for (int corner = 0; corner < (1 << Dim); ++corner) {
       Vector<Dim, int> cell;
@@ -63,31 +63,10 @@ struct SubtractCellStress {
         cell[i] = at[i] - (corner >> i & 1);
         exists = exists && cell[i] >= 0 && cell[i] < basis.grid.cells[i];
       }
-      if (exists && virtual_stress.is_boundary(cell)) add_cell(I, cell, chi, f);
+      if (exists && virtual_stress.is_boundary(cell))
+        add_whole_cell(basis, cell, corner, virtual_stress, chi, gauss, f);
     }
     for (int i = 0; i < Dim; ++i) nodes.force(I, i) -= f[i];
-  }
-
- private:
-  KOKKOS_FUNCTION void add_cell(int I, const Vector<Dim, int>& cell, TractionMask chi,
-                                Vector<Dim, Real>& f) const {
-    const GaussPoints<Real> gauss(virtual_stress.gauss_points);
-    int points = 1;
-    for (int i = 0; i < Dim; ++i) points *= gauss.count;
-    for (int c = 0; c < points; ++c) {
-      Vector<Dim, Real> xi;
-      Real weight = 1;
-      for (int i = 0, k = c; i < Dim; ++i, k /= gauss.count) {
-        xi[i] = gauss.point[k % gauss.count];
-        weight *= gauss.weight[k % gauss.count];
-      }
-      const auto place = basis.grid.map(cell, xi);
-      const auto shape = basis.shape(place.x);
-      const auto bar = virtual_stress.at(place.x, chi);
-      const Real V = weight * place.volume_ratio;
-      for (int a = 0; a < Basis::support; ++a)
-        if (shape.node[a] == I) f += V * (bar.stress * shape.dN[a] + shape.N[a] * bar.divergence);
-    }
   }
 };
 

@@ -5,6 +5,7 @@
 /// a step for the next one, so the virtual stress goes in a step ahead.
 #pragma once
 
+#include <vsb/kernels/lane_surface_traction.hpp>
 #include <vsb/kernels/lane_sweeps.hpp>
 #include <vsb/kernels/mark_lanes.hpp>
 #include <vsb/kernels/migrate_lanes.hpp>
@@ -18,7 +19,10 @@ template <int Dim, class Real, class Device>
 struct LaneState {
   LaneMemory<Dim, Real, Device> memory;
   LaneBoundary<Dim, Device> boundary;
-  long long repacked = 0;  ///< times
+  LaneSurfacePoints<Dim, Real, Device> surface;  ///< none, unless a traction is imposed on points
+  TractionMask original = 0;  ///< tractions of the original method, which sweeps take no notice of
+  int gauss_points = 2;       ///< of these, per direction, 1 to 4
+  long long repacked = 0;     ///< times
   int steps_since_repacked = 1000;
   int leavers = 0;  ///< particles that left their cells in the last step
 
@@ -139,6 +143,7 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
             next_virtual_stress,
             summed});
   });
+  move_surface_points(exec, m, s.surface);
   ++s.steps_since_repacked;
   s.leavers = count_leavers(exec, m);
   if (s.leavers == 0) {
@@ -159,11 +164,11 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
     detail::sum_lanes(exec, s, next_virtual_stress);
     return -1;
   }
-  const bool marked = update_occupied(exec, m.lanes, s.boundary) && Field::loaded;
+  const bool marked = update_occupied(exec, m.lanes, s.boundary) && (Field::loaded || s.original != 0);
   if (marked) mark_lanes(exec, m.lanes, m.grid.cells, s.boundary, false);
   if (!summed)
     detail::sum_lanes(exec, s, next_virtual_stress);
-  else if (marked)
+  else if (marked && Field::loaded)
     detail::sum_lanes(exec, s, next_virtual_stress, s.boundary.stale);
   return -1;
 }

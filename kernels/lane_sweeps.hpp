@@ -17,6 +17,7 @@
 
 #include <vsb/kernels/lane_tractions.hpp>
 #include <vsb/physics/kinematics.hpp>
+#include <vsb/physics/next_cell.hpp>
 
 namespace vsb {
 
@@ -276,7 +277,7 @@ struct MoveGroup {
       auto cell = before;
       Vector<Dim, Real> here;
       for (int i = 0; i < Dim; ++i) here[i] = xi[i][l];
-      if (!to_next_cell(cell, here)) continue;
+      if (!to_next_cell(grid, cell, here)) continue;
       for (int i = 0; i < Dim; ++i) xi[i].set(l, here[i]);
       const LaneMask lane = LaneMask(1) << l;
       const int layers = Dim == 1 ? 0 : cell[Dim - 1] - before[Dim - 1];
@@ -285,31 +286,6 @@ struct MoveGroup {
       leaving |= lane;
     }
     return leaving;
-  }
-  /// The cell in which a particle is and its place there; whether that is another cell than before. Round-off
-  /// at a face of the grid counts as inside, as everywhere (UniformGrid::contains).
-  KOKKOS_FUNCTION bool to_next_cell(Vector<Dim, int>& cell, Vector<Dim, Real>& xi) const {
-    constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
-    bool out = false;
-    for (int i = 0; i < Dim; ++i) {
-      const Real round_off = 16 * static_cast<Real>(grid.cells[i]) * epsilon;
-      if (xi[i] >= Real(0) && xi[i] < Real(1)) continue;
-      if (cell[i] == 0 && xi[i] < Real(0) && xi[i] >= -round_off) continue;
-      if (cell[i] == grid.cells[i] - 1 && xi[i] >= Real(1) && xi[i] <= Real(1) + round_off) continue;
-      out = true;
-      const Real whole = math::floor(xi[i]);
-      if (!(math::abs(whole) < Real(1 << 20))) {
-        cell[i] = -1;  // not finite, or nowhere near: outside the grid
-        continue;
-      }
-      cell[i] += static_cast<int>(whole);
-      xi[i] -= whole;
-      if (xi[i] >= Real(1)) {  // from just below zero
-        xi[i] = Real(0);
-        ++cell[i];
-      }
-    }
-    return out;
   }
 };
 

@@ -101,6 +101,17 @@ struct CellLanes {
     if constexpr (Dim == 2) return k + c;
     return (k + (c >> 1)) * node_rows_per_plane() + j + (c & 1);
   }
+  /// Where a node of the grid is kept, -1 where it is not: then no cell with particles has it.
+  KOKKOS_FUNCTION int node_at(const Vector<Dim, int>& ijk) const {
+    int row = 0;
+    for (int i = Dim - 1; i >= 0; --i) {
+      const int c = ijk[i] - box.first[i];
+      if (c < 0 || c > box.cells[i]) return -1;
+      if (i > 0) row = row * (box.cells[i] + 1) + c;
+    }
+    const int x = ijk[0] - box.first[0], chunk = chunk_at(row * (groups_per_row() + 1) + x / width);
+    return chunk < 0 ? -1 : chunk * width + x % width;
+  }
   /// The grid's cell in a lane.
   KOKKOS_FUNCTION Vector<Dim, int> cell(const LaneGroup<Dim>& group, int lane) const {
     Vector<Dim, int> c;
@@ -177,6 +188,10 @@ struct LaneNodes {
                                                           ///< m/s; dt v and dt v* in cells; 1 / m
   Kokkos::View<std::uint32_t* [Dim], Device> fixed;       ///< [chunk][component]: bit l: prescribed in lane l
 
+  /// The column of sum number `sum` to which a cell adds at its corner a, by the layer of the cell.
+  KOKKOS_FUNCTION static constexpr int sum_column(int sum, int a) {
+    return (Dim > 1 && (a >> (Dim - 1) & 1) ? upper_sums : lower_sums) + sum;
+  }
   KOKKOS_FORCEINLINE_FUNCTION Real* at(int column, int node) const {
     return data.data() + static_cast<size_t>(column) * data.stride(1) + node;
   }

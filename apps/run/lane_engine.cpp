@@ -12,11 +12,8 @@ std::string obstacle(const Scene& scene) {
     return fmt::format("method.scatter = \"{}\" is a way of the particle kernels", scene.method.scatter);
   if (scene.method.fill_criterion > 0) return "method.fill_criterion is on";
   if (scene.method.void_filter) return "method.void_filter is on";
-  for (const auto& traction : scene.tractions) {
-    if (traction.imposition != Imposition::virtual_stress)
-      return fmt::format("traction '{}' is not imposed by the (modified) virtual stress", traction.name);
+  for (const auto& traction : scene.tractions)
     if (traction.self_balanced) return fmt::format("traction '{}' is self-balanced", traction.name);
-  }
   for (const auto& body : scene.bodies) {
     const auto &a = scene.bodies.front().material, &b = body.material;
     if (a.law != b.law || a.youngs_modulus != b.youngs_modulus || a.poisson_ratio != b.poisson_ratio)

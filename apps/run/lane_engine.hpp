@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include <vsb/kernels/lane_step.hpp>
+#include <vsb/kernels/lane_loads.hpp>
 #include "run/execution_space.hpp"
 #include "run/loads.hpp"
 
@@ -24,22 +24,25 @@ class LaneEngine {
     UniformGrid<Dim, Real> grid;
     Walls<Dim> walls;
     BoundaryNodes<Device> tractions;  ///< [node of the grid]: declared
-    TractionMask conservative;
+    TractionMask conservative, original;
+    int gauss_points;
     Material<Real> material;
     int state_size;  ///< of the material
     StepOptions<Dim, Real> options;
   };
-  /// Packs the particles, which must lie in the grid.
-  LaneEngine(const Setup& setup, const Particles<Dim, Real, Device>& particles);
+  /// Packs the particles, which must lie in the grid, and the surface points, if there are any.
+  LaneEngine(const Setup& setup, const Particles<Dim, Real, Device>& particles,
+             const SurfacePoints<Dim, Real, Device>& surface);
 
-  /// Makes ready for a first step under these loads.
-  void prepare(const Loads<Dim, Real>& loads);
+  /// Makes ready for a first step under these loads. Returns -1, or what step() returns of a surface point.
+  int prepare(const Loads<Dim, Real>& loads);
   bool prepared() const { return prepared_; }
   /// Advances, and makes ready for another step, under the loads of that one. Returns -1, or the number of a
-  /// particle that left the grid.
+  /// particle that left the grid, or the number of particles plus that of a surface point that did.
   int step(const Loads<Dim, Real>& next);
-  /// Writes the particles back.
-  void unpack(const Particles<Dim, Real, Device>& particles) const;
+  /// Writes the particles and the surface points back.
+  void unpack(const Particles<Dim, Real, Device>& particles,
+              const SurfacePoints<Dim, Real, Device>& surface) const;
   int boundary_nodes() const;
   size_t bytes() const;
 
@@ -48,6 +51,8 @@ class LaneEngine {
   bool restore(const std::vector<unsigned char>& saved);
 
  private:
+  int add_loads(const Loads<Dim, Real>& loads);
+
   Setup setup_;
   ExecutionSpace exec_;
   LaneState<Dim, Real, Device> state_;

@@ -63,23 +63,45 @@ auto on_host(const View& view) {
   return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), view);
 }
 
+/// An array as long as the view.
+template <class View>
+bool read_view(Reader& r, const View& view) {
+  const auto host = Kokkos::create_mirror_view(view);
+  if (!r.array(host.data(), host.span())) return false;
+  Kokkos::deep_copy(view, host);
+  return true;
+}
+
 }  // namespace detail
 
 template <int Dim, class Real>
-LaneEngine<Dim, Real>::LaneEngine(const Setup& setup, const Particles<Dim, Real, Device>& particles)
+LaneEngine<Dim, Real>::LaneEngine(const Setup& setup, const Particles<Dim, Real, Device>& particles,
+                                  const SurfacePoints<Dim, Real, Device>& surface)
     : setup_(setup) {
   state_.memory.grid = setup.grid;
   state_.memory.walls = setup.walls;
   state_.memory.lanes.state_size = setup.state_size;
   state_.boundary.declared = setup.tractions;
   state_.boundary.conservative = setup.conservative;
+  state_.original = setup.original;
+  state_.gauss_points = setup.gauss_points;
+  state_.surface = pack_surface_points(exec_, surface, setup.grid);
   pack_lanes(exec_, particles, state_);
 }
 
 template <int Dim, class Real>
-void LaneEngine<Dim, Real>::prepare(const Loads<Dim, Real>& loads) {
+int LaneEngine<Dim, Real>::prepare(const Loads<Dim, Real>& loads) {
   loads.with_lane_field([&](const auto& field) { prepare_lane_step(exec_, state_, field); });
   prepared_ = true;
+  return add_loads(loads);
+}
+
+template <int Dim, class Real>
+int LaneEngine<Dim, Real>::add_loads(const Loads<Dim, Real>& loads) {
+  if (state_.surface.count() == 0 && state_.original == 0) return -1;
+  const int lost =
+      loads.with_field_beside_lanes([&](const auto& field) { return add_lane_loads(exec_, state_, field); });
+  return lost < 0 ? -1 : state_.memory.lanes.particle_count + lost;
 }
 
 template <int Dim, class Real>
@@ -92,13 +114,15 @@ int LaneEngine<Dim, Real>::step(const Loads<Dim, Real>& next) {
         },
         setup_.material, setup_.options.volume_update);
   });
-  return lost;
+  return lost < 0 ? add_loads(next) : lost;
 }
 
 template <int Dim, class Real>
-void LaneEngine<Dim, Real>::unpack(const Particles<Dim, Real, Device>& particles) const {
+void LaneEngine<Dim, Real>::unpack(const Particles<Dim, Real, Device>& particles,
+                                   const SurfacePoints<Dim, Real, Device>& surface) const {
   unpack_particles(exec_, state_.memory, particles);
   unpack_homeless(exec_, state_.memory, particles);
+  unpack_surface_points(exec_, state_.surface, state_.memory.grid, surface);
   exec_.fence();
 }
 
@@ -113,9 +137,11 @@ size_t LaneEngine<Dim, Real>::bytes() const {
   const auto& l = state_.memory.lanes;
   const auto& n = state_.memory.nodes;
   const auto& b = state_.boundary;
+  const auto& p = state_.surface;
   return bytes(l.data, l.id, l.held, l.mass_matrices, l.groups, l.layer_first, l.plane_first, l.group_at,
                l.chunk_at, n.data, n.fixed, b.bits.occupied, b.bits.exterior, b.bits.boundary, b.marked,
-               b.active, b.tractions);
+               b.active, b.tractions, p.cell, p.xi, p.area, p.tractions, p.carrier, p.bins.bin, p.bins.order,
+               p.bins.offset, p.bins.cursor, p.bins.slot, p.bins.occupied);
 }
 
 template <int Dim, class Real>
@@ -149,6 +175,10 @@ std::vector<unsigned char> LaneEngine<Dim, Real>::save() const {
   const auto sums = detail::on_host(m.nodes.data);
   for (int c = 0; c < 2 * m.nodes.sum_columns; ++c) w.array(&sums(0, static_cast<size_t>(c)), nodes);
   w.array(detail::on_host(l.mass_matrices).data(), l.mass_matrices.size());
+  const auto& p = state_.surface;
+  w.array(detail::on_host(p.cell).data(), p.cell.span());
+  w.array(detail::on_host(p.xi).data(), p.xi.span());
+  w.array(detail::on_host(p.area).data(), p.area.span());
   return std::move(w.result);
 }
 
@@ -202,9 +232,11 @@ bool LaneEngine<Dim, Real>::restore(const std::vector<unsigned char>& saved) {
   for (int c = 0; c < 2 * m.nodes.sum_columns; ++c)
     if (!r.array(&sums(0, static_cast<size_t>(c)), static_cast<size_t>(nodes))) return false;
   Kokkos::deep_copy(m.nodes.data, sums);
-  const auto moments = Kokkos::create_mirror_view(l.mass_matrices);
-  if (!r.array(moments.data(), moments.size())) return false;
-  Kokkos::deep_copy(l.mass_matrices, moments);
+  if (!detail::read_view(r, l.mass_matrices)) return false;
+  auto& p = state_.surface;
+  if (!detail::read_view(r, p.cell) || !detail::read_view(r, p.xi) || !detail::read_view(r, p.area))
+    return false;
+  p.sorted = false;
   if (!r.at_end()) return false;
   mark_packed_lanes(exec_, state_);
   prepared_ = prepared;

@@ -114,23 +114,47 @@ class Loads {
     return all_uniform_ ? work(uniform_) : work(fields_);
   }
 
-  /// Calls work(field) with the field as the cell lanes take it: by the virtual stress of particles alone,
-  /// and as an affine one where it is.
+  /// The tractions of the original method, and the Gauss points per direction of its cells.
+  TractionMask original() const { return original_; }
+  int gauss_points() const { return gauss_points_; }
+
+  /// Calls work(field) with the field as the sweeps over cell lanes take it: of the (modified) virtual stress
+  /// method alone, and as an affine one where it is.
   template <class Work>
   void with_lane_field(const Work& work) const {
-    if (on_nodes_ == 0) return work(NoVirtualStress{});
-    if (all_uniform_) return work(uniform_);
-    if (!all_affine_) return work(fields_);
+    if (modified() == 0) return work(NoVirtualStress{});
+    if (all_uniform_) {
+      auto uniform = uniform_;
+      for_each_other([&](int k) { uniform.stress[k] = SymmetricTensor<Dim, Real>::zero(); });
+      return work(uniform);
+    }
+    auto fields = fields_;
+    for_each_other([&](int k) { fields.field[k] = StressField<Dim, Real>(); });
+    if (!all_affine_) return work(fields);
     AffineVirtualStress<Dim, Real> affine;
-    affine.count = fields_.count;
+    affine.count = fields.count;
     for (int k = 0; k < affine.count; ++k) {
-      affine.field[k] = fields_.field[k].as_affine();
-      affine.factor[k] = fields_.factor[k];
+      affine.field[k] = fields.field[k].as_affine();
+      affine.factor[k] = fields.factor[k];
     }
     work(affine);
   }
 
+  /// Calls work(field) with the field of all tractions, for what loads cell lanes beside the sweeps.
+  template <class Work>
+  auto with_field_beside_lanes(const Work& work) const {
+    return all_uniform_ ? work(uniform_) : work(fields_);
+  }
+
  private:
+  TractionMask modified() const { return on_nodes_ & ~original_; }
+  /// Calls work(k) for the tractions that are not of the modified method.
+  template <class Work>
+  void for_each_other(const Work& work) const {
+    for (int k = 0; k < fields_.count; ++k)
+      if ((modified() >> k & 1u) == 0) work(k);
+  }
+
   TractionMask on_nodes_, original_, conservative_ = 0, balanced_ = 0;
   int gauss_points_;
   bool all_uniform_ = true, all_affine_ = true;

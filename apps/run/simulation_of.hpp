@@ -329,23 +329,26 @@ class SimulationOf final : public Simulation {
         setup.walls.fixed[i][side] = scene_.faces.fixed[static_cast<size_t>(i)][static_cast<size_t>(side)];
     setup.tractions = state_.occupancy.tractions;
     setup.conservative = state_.occupancy.conservative;
+    setup.original = loads_.original();
+    setup.gauss_points = loads_.gauss_points();
     setup.material = bodies_.front().material;
     setup.state_size = state_size<Dim>(setup.material);
     setup.options = options_;
-    lanes_ = std::make_unique<LaneEngine<Dim, Real>>(setup, state_.particles);
+    lanes_ = std::make_unique<LaneEngine<Dim, Real>>(setup, state_.particles, state_.surface);
     packed_ = false;
   }
   /// Brings the particles back from the lanes, where they moved there.
   void unpack() const {
     if constexpr (has_lanes) {
-      if (lanes_ && packed_) lanes_->unpack(state_.particles);
+      if (lanes_ && packed_) lanes_->unpack(state_.particles, state_.surface);
       packed_ = false;
     }
   }
   void advance_lanes(long long steps) {
     if (!lanes_->prepared()) {
       set_loads(static_cast<double>(step_ + 1) * scene_.time.dt);
-      lanes_->prepare(loads_);
+      const int lost = lanes_->prepare(loads_);
+      if (lost >= 0) throw_lost(lost);
     }
     for (long long n = 0; n < steps; ++n) {
       set_loads(static_cast<double>(step_ + 2) * scene_.time.dt);

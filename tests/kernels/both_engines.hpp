@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <map>
-#include <vsb/kernels/lane_step.hpp>
+#include <vsb/kernels/lane_loads.hpp>
 
 #include "support.hpp"
 
@@ -113,6 +113,7 @@ struct BothEngines {
   bool load_seen[4] = {};           ///< by GroupLoad
   std::vector<TractionMask> masks;  ///< declared at the grid's nodes
   TractionMask conservative = 0;
+  SurfacePoints<Dim, Real, Device> surface;  ///< none, unless a test has some
 
   explicit BothEngines(const BodyShape& shape, unsigned seed = 81) {
     basis.grid = make_grid<Dim, Real>({{38, 18, 18}});
@@ -188,9 +189,20 @@ struct BothEngines {
   /// field_at(n) is the field at the end of step n. False where a particle is lost.
   template <class Material, class Volume, class FieldAt>
   void run(const Material& material, const Volume& volume, const FieldAt& field_at, int steps = 100) {
+    run_with_loads(
+        material, volume, field_at, field_at, [](int) { return -1; }, steps);
+  }
+
+  /// The same where the sweeps over cell lanes have another field than the particle kernels, and add(n) adds
+  /// what else loads the lanes in step n; it returns -1.
+  template <class Material, class Volume, class FieldAt, class LaneFieldAt, class Add>
+  void run_with_loads(const Material& material, const Volume& volume, const FieldAt& field_at,
+                      const LaneFieldAt& lane_field_at, const Add& add, int steps = 100) {
     Kokkos::deep_copy(copy.block, block.block);
     if (block.state_block.size() > 0) Kokkos::deep_copy(copy.state_block, block.state_block);
     state = make_state(block.particles, basis);
+    state.surface = surface;
+    lanes.surface = pack_surface_points(Exec(), surface, basis.grid);
     edit(state.occupancy.tractions,
          [&](const auto& host) { std::copy(masks.begin(), masks.end(), host.data()); });
     state.occupancy.conservative = lanes.boundary.conservative = conservative;
@@ -206,10 +218,12 @@ struct BothEngines {
     options.volume_update = volume;
     const std::vector<Body<Real>> bodies{{0, block.particles.count(), material}};
     REQUIRE(pack_lanes(Exec(), copy.particles, lanes) == -1);
-    prepare_lane_step(Exec(), lanes, field_at(0));
+    prepare_lane_step(Exec(), lanes, lane_field_at(0));
+    REQUIRE(add(0) == -1);
     note_loads();
     for (int n = 0; n < steps; ++n) {
-      REQUIRE(lane_step(Exec(), lanes, material, volume, field_at(n + 1), options) == -1);
+      REQUIRE(lane_step(Exec(), lanes, material, volume, lane_field_at(n + 1), options) == -1);
+      REQUIRE(add(n + 1) == -1);
       moved += count_leavers(Exec(), lanes.memory);  // none after packing anew
       REQUIRE(step(Exec(), state, bodies, basis, field_at(n), options) == -1);
       if (n % 5 == 0) note_loads();

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Loads that the sweeps over cell lanes leave to kernels of their own: tractions on surface points, and
+/// those of the original virtual stress boundary method.
+#pragma once
+
+#include <vsb/kernels/lane_cell_virtual_stress.hpp>
+#include <vsb/kernels/lane_step.hpp>
+
+namespace vsb {
+
+/// Adds the loads of the step to come on s.surface, and those of s.original, to what prepare_lane_step or
+/// lane_step has summed up for it; `virtual_stress` is the field at its end, of all these tractions. The
+/// field of the sweeps must be zero in those of s.original. Returns -1, or the lowest number of a surface
+/// point outside the grid.
+template <class Exec, class Field, int Dim, class Real, class Device>
+int add_lane_loads(const Exec& exec, LaneState<Dim, Real, Device>& s, const Field& virtual_stress) {
+  add_cell_virtual_stress(exec, s.memory.lanes, s.memory.nodes, s.memory.grid, s.boundary, virtual_stress,
+                          s.original, s.gauss_points);
+  return add_surface_tractions(exec, s.memory, s.surface, virtual_stress);
+}
+
+}  // namespace vsb

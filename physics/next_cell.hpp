@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// From cell to cell of a uniform grid: for what keeps its cell and its place xi in [0, 1)^Dim there.
+#pragma once
+
+#include <vsb/physics/uniform_grid.hpp>
+
+namespace vsb {
+
+/// The cell in which a place is that lies at xi of `cell`, and its xi there; whether that is another cell
+/// than before. Round-off at a face of the grid counts as inside, as everywhere (UniformGrid::contains). What
+/// is not finite, or nowhere near, gets a cell outside the grid.
+template <int Dim, class Real>
+KOKKOS_INLINE_FUNCTION bool to_next_cell(const UniformGrid<Dim, Real>& grid, Vector<Dim, int>& cell,
+                                         Vector<Dim, Real>& xi) {
+  constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
+  bool out = false;
+  for (int i = 0; i < Dim; ++i) {
+    const Real round_off = 16 * static_cast<Real>(grid.cells[i]) * epsilon;
+    if (xi[i] >= Real(0) && xi[i] < Real(1)) continue;
+    if (cell[i] == 0 && xi[i] < Real(0) && xi[i] >= -round_off) continue;
+    if (cell[i] == grid.cells[i] - 1 && xi[i] >= Real(1) && xi[i] <= Real(1) + round_off) continue;
+    out = true;
+    const Real whole = math::floor(xi[i]);
+    if (!(math::abs(whole) < Real(1 << 20))) {
+      cell[i] = -1;
+      continue;
+    }
+    cell[i] += static_cast<int>(whole);
+    xi[i] -= whole;
+    if (xi[i] >= Real(1)) {  // from just below zero
+      xi[i] = Real(0);
+      ++cell[i];
+    }
+  }
+  return out;
+}
+
+}  // namespace vsb

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// What a whole cell under a virtual stress gives to one of its nodes (Eqs. 21, 22), by Gauss points:
+///   sum_c V_c (sbar_c . grad N_c + N_c fbar_c).
+#pragma once
+
+#include <vsb/physics/gauss_points.hpp>
+#include <vsb/physics/virtual_stress.hpp>
+
+namespace vsb {
+
+/// Adds to f what `cell` gives to its corner a, numbered as in multilinear.hpp, under the given tractions; f
+/// in N.
+template <class Basis, class Field, int Dim, class Real>
+KOKKOS_INLINE_FUNCTION void add_whole_cell(const Basis& basis, const Vector<Dim, int>& cell, int a,
+                                           const Field& field, TractionMask tractions,
+                                           const GaussPoints<Real>& gauss, Vector<Dim, Real>& f) {
+  int points = 1;
+  for (int i = 0; i < Dim; ++i) points *= gauss.count;
+  for (int c = 0; c < points; ++c) {
+    Vector<Dim, Real> xi;
+    Real weight = 1;
+    for (int i = 0, k = c; i < Dim; ++i, k /= gauss.count) {
+      xi[i] = gauss.point[k % gauss.count];
+      weight *= gauss.weight[k % gauss.count];
+    }
+    const auto place = basis.grid.map(cell, xi);
+    const auto shape = basis.shape(place.x);
+    const auto bar = field.at(place.x, tractions);
+    const Real V = weight * place.volume_ratio;
+    f += V * (bar.stress * shape.dN[a] + shape.N[a] * bar.divergence);
+  }
+}
+
+}  // namespace vsb

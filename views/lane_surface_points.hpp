@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Surface points (views/surface_points.hpp) beside cell lanes: where they are, a cell and a place in it say,
+/// as of the particles there.
+#pragma once
+
+#include <vsb/views/cell_lanes.hpp>
+#include <vsb/views/surface_points.hpp>
+
+namespace vsb {
+
+/// Surface points, one row each, sorted by the cells of the lanes' box. A loaded material point moves as its
+/// particle does, from the same place with the same velocities, so it need not know where the lanes keep it.
+template <int Dim, class Real, class Device>
+struct LaneSurfacePoints {
+  using Fields = Kokkos::View<Real**, Kokkos::LayoutRight, Device>;
+  Kokkos::View<int* [Dim], Device> cell;          ///< [point][Dim], of the grid
+  Fields xi;                                      ///< [point][Dim]: place in the cell, in [0, 1)
+  Fields area;                                    ///< [point][Dim]: as in SurfacePoints
+  Kokkos::View<TractionMask*, Device> tractions;  ///< [point]: the tractions that act on it
+  Kokkos::View<int*, Device> carrier;             ///< [point]: see SurfaceCarrier
+  ParticleBins<Device> bins;                      ///< by cell of `box`; one more for points outside it
+  CellBox<Dim> box;
+  bool sorted = false;  ///< whether `bins` are up to date for `box`
+
+  KOKKOS_FUNCTION int count() const { return static_cast<int>(xi.extent(0)); }
+  KOKKOS_FUNCTION Vector<Dim, int> cell_of(int b) const {
+    Vector<Dim, int> c;
+    for (int i = 0; i < Dim; ++i) c[i] = cell(b, i);
+    return c;
+  }
+  KOKKOS_FUNCTION Vector<Dim, Real> xi_of(int b) const { return row(xi, b); }
+  KOKKOS_FUNCTION Vector<Dim, Real> area_of(int b) const { return row(area, b); }
+
+ private:
+  KOKKOS_FUNCTION static Vector<Dim, Real> row(const Fields& field, int b) {
+    Vector<Dim, Real> v;
+    for (int i = 0; i < Dim; ++i) v[i] = field(b, i);
+    return v;
+  }
+};
+
+}  // namespace vsb
