@@ -12,7 +12,7 @@
 #include <vsb/physics/elastic_cone.hpp>
 #include <vsb/physics/mohr_coulomb_return.hpp>
 #include <vsb/physics/plastic_strain.hpp>
-#include <vsb/physics/symmetric_eigen.hpp>
+#include <vsb/physics/principal_stresses.hpp>
 
 namespace vsb {
 
@@ -93,7 +93,7 @@ struct MohrCoulomb {
   template <int Dim>
   [[gnu::noinline]] KOKKOS_FUNCTION void return_stress(SymmetricTensor<Dim, Real>& stress,
                                                        Vector<state_size<Dim>(), Real>& state) const {
-    auto principal = principal_values(stress);
+    auto principal = principal_stresses(stress);
     auto& value = principal.value;
     int at[3] = {0, 1, 2};  // of the largest, the middle, the smallest
     const auto sort = [&](int a, int b) {

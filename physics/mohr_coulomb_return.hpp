@@ -31,25 +31,25 @@ struct MohrCoulombSurface {
   }
 
   KOKKOS_FUNCTION Vector<3, Real> returned(const Vector<3, Real>& trial) const {
-    // In this order: the main plane f(s1, s3), the edges s2 = s3 and s1 = s2 of the pyramid; then the faces,
-    // edges and vertices of the cut-off, alone and with the pyramid. At the vertex s1 = s2 = tensile strength
-    // four planes meet, of which a sorted trial stress needs one of two sets of three.
-    constexpr int sets[10][3] = {{main, none, none},       {main, right, none},
-                                 {main, left, none},       {tension_1, none, none},
-                                 {main, tension_1, none},  {tension_1, tension_2, none},
-                                 {main, right, tension_1}, {main, tension_1, tension_2},
-                                 {main, left, tension_1},  {tension_1, tension_2, tension_3}};
-    const int count = tensile_strength < apex ? 10 : 3;
+    // The main plane f(s1, s3), then the edges s2 = s3 and s1 = s2 of the pyramid; then the faces, edges and
+    // vertices of the cut-off, alone and with the pyramid. At the vertex s1 = s2 = tensile strength four
+    // planes meet, of which a sorted trial stress needs one of two sets of three.
     Vector<3, Real> s;
-    for (int n = 0; n < count; ++n)
-      if (solve(trial, sets[n], s)) return s;
+    if (solve<1>(trial, {main}, s) || solve<2>(trial, {main, right}, s) || solve<2>(trial, {main, left}, s))
+      return s;
+    if (tensile_strength < apex &&
+        (solve<1>(trial, {tension_1}, s) || solve<2>(trial, {main, tension_1}, s) ||
+         solve<2>(trial, {tension_1, tension_2}, s) || solve<3>(trial, {main, right, tension_1}, s) ||
+         solve<3>(trial, {main, tension_1, tension_2}, s) || solve<3>(trial, {main, left, tension_1}, s) ||
+         solve<3>(trial, {tension_1, tension_2, tension_3}, s)))
+      return s;
     // The apex, also where the flow directions do not lead there (psi = 0): no other state is admissible.
     const Real vertex = math::min(apex, tensile_strength);
     return vertex < std::numeric_limits<Real>::infinity() ? Vector<3, Real>{{vertex, vertex, vertex}} : trial;
   }
 
  private:
-  enum : int { main, right, left, tension_1, tension_2, tension_3, none };
+  enum : int { main, right, left, tension_1, tension_2, tension_3 };
   struct Plane {
     Vector<3, Real> normal, flow;
     Real limit;
@@ -71,26 +71,26 @@ struct MohrCoulombSurface {
   }
 
   /// The stress with the planes of a set active; whether it is the one sought.
-  KOKKOS_FUNCTION bool solve(const Vector<3, Real>& trial, const int (&set)[3], Vector<3, Real>& s) const {
-    Plane active[3];
-    Vector<3, Real> step[3];  // D m_j / (2 mu): the multipliers below are stresses
-    auto A = Matrix<3, Real>::identity();
-    Vector<3, Real> excess = Vector<3, Real>::zero();
-    int count = 0;
-    for (; count < 3 && set[count] != none; ++count) {
-      auto& p = active[count] = plane(set[count]);
-      step[count] = p.flow;
+  template <int Count>
+  KOKKOS_FUNCTION bool solve(const Vector<3, Real>& trial, const int (&set)[Count],
+                             Vector<3, Real>& s) const {
+    Vector<3, Real> normal[Count], step[Count];  // step: D m_j / (2 mu), so that multipliers are stresses
+    Vector<Count, Real> excess;
+    for (int j = 0; j < Count; ++j) {
+      const Plane p = plane(set[j]);
+      normal[j] = p.normal;
       const Real isotropic = coupling * (p.flow[0] + p.flow[1] + p.flow[2]);
-      for (int k = 0; k < 3; ++k) step[count][k] += isotropic;
-      excess[count] = dot(p.normal, trial) - p.limit;
+      for (int k = 0; k < 3; ++k) step[j][k] = p.flow[k] + isotropic;
+      excess[j] = dot(p.normal, trial) - p.limit;
     }
-    for (int i = 0; i < count; ++i)
-      for (int j = 0; j < count; ++j) A(i, j) = dot(active[i].normal, step[j]);
+    Matrix<Count, Real> A;
+    for (int i = 0; i < Count; ++i)
+      for (int j = 0; j < Count; ++j) A(i, j) = dot(normal[i], step[j]);
     const auto multiplier = inverse(A) * excess;
     const Real round_off =
         64 * std::numeric_limits<Real>::epsilon() * (math::abs(trial[0]) + math::abs(trial[2]) + strength);
     s = trial;
-    for (int j = 0; j < count; ++j) {
+    for (int j = 0; j < Count; ++j) {
       if (!(multiplier[j] >= -round_off)) return false;
       s -= multiplier[j] * step[j];
     }
