@@ -12,6 +12,7 @@
 /// The dilation angle does not matter to the stresses.
 #pragma once
 
+#include <limits>
 #include <vsb/physics/polar.hpp>
 
 namespace vsb {
@@ -54,7 +55,16 @@ struct ExactMohrCoulombCylinder {
     return {scale * (1 - b * b), scale * (1 + b * b), T(0)};
   }
 
-  /// sigma_zz, where it is the intermediate principal stress: nothing yields along z.
+  /// The pressure beyond which sigma_zz would be the largest principal stress at the hole, and all this would
+  /// no longer hold, Pa; infinite where there is none.
+  T largest_pressure() const {
+    const T sine = math::sin(friction_angle), nu = poisson_ratio;
+    const T share = (1 - nu) * (1 - sine) - nu * (1 + sine);
+    if (!(share > 0)) return std::numeric_limits<T>::infinity();
+    return 2 * (1 - nu) * cohesion * math::cos(friction_angle) / share;
+  }
+
+  /// sigma_zz, the intermediate principal stress: nothing yields along z.
   T axial_stress(const PolarStress<T>& s) const { return poisson_ratio * (s.rr + s.tt); }
 
  private:

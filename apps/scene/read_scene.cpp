@@ -311,12 +311,11 @@ YieldingCylinderComparison read_yielding_cylinder(TableReader& r, const Material
   YieldingCylinderComparison c{};
   c.inner_radius = r.number("inner_radius", Range::positive(), {}, "m");
   c.outer_radius = r.number("outer_radius", {c.inner_radius, Range::any().max, true, false}, {}, "m");
-  const double collapse =
-      ExactMohrCoulombCylinder<double>{c.inner_radius,    c.outer_radius,          0,
-                                       material.cohesion, material.friction_angle, material.poisson_ratio}
-          .collapse_pressure();
-  c.pressure = r.number("pressure", {0, collapse, true, true}, {},
-                        "Pa, positive in compression, less than the collapse load");
+  const ExactMohrCoulombCylinder<double> exact{
+      c.inner_radius, c.outer_radius, 0, material.cohesion, material.friction_angle, material.poisson_ratio};
+  c.pressure = r.number(
+      "pressure", {0, std::min(exact.collapse_pressure(), exact.largest_pressure()), true, true}, {},
+      "Pa, positive in compression; less than the collapse load, sigma_zz the intermediate principal stress");
   return c;
 }
 

@@ -50,7 +50,8 @@ Eigen::Vector3d trial_of(const Eigen::Vector3d& s, const Eigen::Vector3d& e) {
 /// A state on the surface and a combination of its flow directions: the return must undo the strain.
 void check_return(const MohrCoulomb<double>& m, const Eigen::Vector3d& s, const Eigen::Vector3d& strain) {
   const auto trial = trial_of(s, strain);
-  for (const auto& order : {std::array<int, 3>{0, 1, 2}, {1, 0, 2}, {2, 1, 0}, {0, 2, 1}, {1, 2, 0}, {2, 0, 1}}) {
+  for (const auto& order :
+       {std::array<int, 3>{0, 1, 2}, {1, 0, 2}, {2, 1, 0}, {0, 2, 1}, {1, 2, 0}, {2, 0, 1}}) {
     Eigen::Vector3d t, expected, flow;
     for (int k = 0; k < 3; ++k) {
       const int at = order[static_cast<size_t>(k)];
@@ -65,9 +66,9 @@ void check_return(const MohrCoulomb<double>& m, const Eigen::Vector3d& s, const 
 /// How far principal stresses are beyond the surface, Pa.
 double beyond(const MohrCoulombConstants& c, Eigen::Vector3d s) {
   std::sort(s.data(), s.data() + 3);
-  return std::max(s[2] - s[0] + (s[2] + s[0]) * std::sin(c.friction_angle) -
-                      2 * c.cohesion * std::cos(c.friction_angle),
-                  s[2] - c.tensile_strength);
+  return std::max(
+      s[2] - s[0] + (s[2] + s[0]) * std::sin(c.friction_angle) - 2 * c.cohesion * std::cos(c.friction_angle),
+      s[2] - c.tensile_strength);
 }
 
 Eigen::Matrix3d dense(const SymmetricTensor<3, double>& s) {
@@ -95,20 +96,31 @@ double energy(const Eigen::Vector3d& d, double E, double nu) {
   return ((1 + nu) * d.squaredNorm() - nu * d.sum() * d.sum()) / E;
 }
 
-/// The least distance from `trial` to the points that beyond() allows, by a search that knows nothing of
-/// planes: pairs of directions are tried from the best point so far, with ever smaller steps.
-double least_energy(const MohrCoulombConstants& c, const Eigen::Vector3d& trial, Eigen::Vector3d at,
-                    Random& random) {
-  const auto value = [&](const Eigen::Vector3d& s) { return energy(s - trial, c.youngs_modulus, c.poisson_ratio); };
-  double best = value(at);
-  for (double step = 4; step > 1e-7; step *= 0.93)
-    for (int n = 0; n < 60; ++n) {
-      const Eigen::Vector3d next =
-          at + step * Eigen::Vector3d(random(-1, 1), random(-1, 1), random(-1, 1));
-      if (beyond(c, next) > 0 || value(next) >= best) continue;
-      at = next;
-      best = value(next);
+/// The least distance from `trial` to the surface, by a search that knows nothing of planes: over all
+/// directions from a point inside to where they meet the surface, on ever finer grids of angles.
+double least_energy(const MohrCoulombConstants& c, const Eigen::Vector3d& trial,
+                    const Eigen::Vector3d& inside) {
+  const auto value = [&](double azimuth, double height) {
+    const Eigen::Vector3d along(std::cos(azimuth) * std::cos(height), std::sin(azimuth) * std::cos(height),
+                                std::sin(height));
+    double in = 0, out = 200;
+    for (int n = 0; n < 50; ++n) {
+      const double middle = (in + out) / 2;
+      (beyond(c, inside + middle * along) > 0 ? out : in) = middle;
     }
+    return energy(inside + in * along - trial, c.youngs_modulus, c.poisson_ratio);
+  };
+  const Eigen::Vector3d towards = trial - inside;
+  double azimuth = std::atan2(towards[1], towards[0]), height = std::asin(towards[2] / towards.norm()),
+         best = value(azimuth, height);
+  for (double range = 1.5; range > 1e-9; range *= 0.6) {
+    const double a0 = azimuth, h0 = height;
+    for (int i = -6; i <= 6; ++i)
+      for (int j = -6; j <= 6; ++j) {
+        const double a = a0 + i * range / 6, h = h0 + j * range / 6, v = value(a, h);
+        if (v < best) best = v, azimuth = a, height = h;
+      }
+  }
   return best;
 }
 
@@ -116,7 +128,8 @@ double least_energy(const MohrCoulombConstants& c, const Eigen::Vector3d& trial,
 
 TEST_CASE("an elastic trial stress and the state stay as they are, bit by bit") {
   const auto m = rock(0.2, 4);
-  for (const Eigen::Vector3d s : {Eigen::Vector3d(0, 0, 0), {3.9, 3.9, -4}, {-20, -1, -3}, {4, 1, -4}}) {
+  for (const Eigen::Vector3d& s : std::initializer_list<Eigen::Vector3d>{
+           Eigen::Vector3d(0, 0, 0), {3.9, 3.9, -4}, {-20, -1, -3}, {4, 1, -4}}) {
     const auto r = returned(m, s);
     CHECK((r.stress == s && r.strain == Eigen::Vector3d::Zero()));
   }
@@ -140,9 +153,9 @@ TEST_CASE("every region: the return undoes any strain in the cone of its flow di
     const auto m = rock(d);
     check_return(m, {4, 0, -4}, 0.1 * m13);
     // s1 = (8 + 0.4 s3) / 1.6.
-    check_return(m, {2.5, -10, -10}, 0.1 * m13 + 0.04 * m12);   // s2 = s3: triaxial compression
-    check_return(m, {4.5, 4.5, -2}, 0.05 * m13 + 0.02 * m23);  // s1 = s2: triaxial extension
-    check_return(m, {2.5, -10, -10}, 0.1 * m13 + 0.1 * m12);    // where two planes weigh the same
+    check_return(m, {2.5, -10, -10}, 0.1 * m13 + 0.04 * m12);  // s2 = s3: triaxial extension
+    check_return(m, {4.5, 4.5, -2}, 0.05 * m13 + 0.02 * m23);  // s1 = s2: triaxial compression
+    check_return(m, {2.5, -10, -10}, 0.1 * m13 + 0.1 * m12);   // where two planes weigh the same
     // The apex, c cot(phi) = 5 * 4 / 3.
     if (d > 0) {
       const double apex = 20. / 3;
@@ -150,7 +163,8 @@ TEST_CASE("every region: the return undoes any strain in the cone of its flow di
     }
     // The cut-off at 4.5, where the pyramid has s3 = -2, and at 2.
     const auto cut = rock(d, 4.5);
-    const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(), z = Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(),
+                          z = Eigen::Vector3d::UnitZ();
     check_return(cut, {4.5, 3, 1}, 0.1 * x);
     check_return(cut, {4.5, 4.5, 1}, 0.1 * x + 0.05 * y);
     check_return(cut, {4.5, 4.5, 4.5}, 0.1 * x + 0.05 * y + 0.01 * z);
@@ -173,7 +187,8 @@ TEST_CASE("a cut-off beyond the apex cuts nothing off") {
   check_near(returned(rock(0.3, 100), trial).stress, returned(rock(0.3), trial).stress, 0);
 }
 
-TEMPLATE_TEST_CASE_SIG("a million random trial states come back to the surface", "", ((int Dim), Dim), 1, 2, 3) {
+TEMPLATE_TEST_CASE_SIG("a million random trial states come back to the surface", "", ((int Dim), Dim), 1, 2,
+                       3) {
   Random random(301);
   double worst = 0, worst_back = 0;
   long yielded = 0;
@@ -196,17 +211,18 @@ TEMPLATE_TEST_CASE_SIG("a million random trial states come back to the surface",
           // sigma_trial - sigma = C : plastic strain.
           const double trace = strain[0] + strain[1] + strain[2];
           for (int k = 0; k < trial.size; ++k)
-            worst_back = std::max(worst_back, std::abs(trial[k] - stress[k] - 64 * state[k] - (k < 3 ? 32 * trace : 0)));
+            worst_back = std::max(worst_back,
+                                  std::abs(trial[k] - stress[k] - 64 * state[k] - (k < 3 ? 32 * trace : 0)));
         }
       }
-  CHECK(yielded > 200000);
+  CHECK(yielded > 150000);
   CHECK(yielded < 350000);
   CHECK(worst < 1e-10);
   CHECK(worst_back < 1e-11);
 }
 
 TEST_CASE("with associated flow the return is the closest point in the energy norm") {
-  Random random(302), search(303);
+  Random random(302);
   int compared = 0;
   for (const double tension : {infinite, 4.5, 1.})
     for (int n = 0; n < 60; ++n) {
@@ -216,10 +232,10 @@ TEST_CASE("with associated flow the return is the closest point in the energy no
       if (beyond(c, trial) <= 0) continue;
       const auto r = returned(m, trial);
       const double ours = energy(r.stress - trial, 80, 0.25),
-                   least = least_energy(c, trial, Eigen::Vector3d::Constant(std::min(0., tension) - 1), search);
+                   least = least_energy(c, trial, Eigen::Vector3d::Constant(-5));
       CAPTURE(trial, r.stress);
-      CHECK(ours <= least * (1 + 1e-12));
-      CHECK(least <= ours * (1 + 2e-3));
+      CHECK(ours <= least * (1 + 1e-9));
+      CHECK(least <= ours * (1 + 2e-4));
       ++compared;
     }
   CHECK(compared > 100);
@@ -264,9 +280,17 @@ TEST_CASE("principal stresses in closed form against Eigen's") {
     check(s);
   }
   const double eps = epsilon<double>;
-  for (const Eigen::Vector3d values : {Eigen::Vector3d(0, 0, 0), {2, 2, 2}, {2, 2, -1}, {-1, -1, 2}, {1, 1 + 1e-9, 5},
-                                       {1, 1 + 1e-15, 1 - 1e-15}, {1, 1 + 4 * eps, 1 + 1e-8}, {1e8, 1, 1e-8},
-                                       {1, 0, -1}, {1e-7, 0, -1e-7}, {1, 2, 3}})
+  for (const Eigen::Vector3d& values : std::initializer_list<Eigen::Vector3d>{Eigen::Vector3d(0, 0, 0),
+                                                                              {2, 2, 2},
+                                                                              {2, 2, -1},
+                                                                              {-1, -1, 2},
+                                                                              {1, 1 + 1e-9, 5},
+                                                                              {1, 1 + 1e-15, 1 - 1e-15},
+                                                                              {1, 1 + 4 * eps, 1 + 1e-8},
+                                                                              {1e8, 1, 1e-8},
+                                                                              {1, 0, -1},
+                                                                              {1e-7, 0, -1e-7},
+                                                                              {1, 2, 3}})
     for (int turn = 0; turn < 50; ++turn) {
       const auto Q = random_rotation(random);
       check(packed(Q * values.asDiagonal() * Q.transpose()));
@@ -297,10 +321,10 @@ TEST_CASE("uniaxial compression and tension, triaxial compression: the loads of 
   for (const double d : {0., 0.6}) {
     const auto m = rock(d);
     // 2 c cos(phi) / (1 - sin(phi)) = 20, 2 c cos(phi) / (1 + sin(phi)) = 5; the factor of confinement is 4.
-    CHECK_THAT(strength(m, 0, -1e-3), WithinAbs(-20, 1e-8));
-    CHECK_THAT(strength(m, 3, -1e-3), WithinAbs(-32, 1e-8));
-    CHECK_THAT(strength(m, 0, 1e-3), WithinAbs(5, 1e-8));
-    CHECK_THAT(strength(rock(d, 2), 0, 1e-3), WithinAbs(2, 1e-8));
+    CHECK_THAT(strength(m, 0, -1e-3), WithinAbs(-20, 1e-7));
+    CHECK_THAT(strength(m, 3, -1e-3), WithinAbs(-32, 1e-7));
+    CHECK_THAT(strength(m, 0, 1e-3), WithinAbs(5, 1e-7));
+    CHECK_THAT(strength(rock(d, 2), 0, 1e-3), WithinAbs(2, 1e-7));
   }
 }
 
@@ -340,25 +364,32 @@ TEST_CASE("plastic strain turns with the material") {
   auto sigma = SymmetricTensor<2, double>::zero();
   auto state = no_state<2>();
   sigma = m.advance(sigma, state, {{{0.2, 0}, {0, 0}}}, 1);
-  const double first = state[0];
+  const double first = state[0], second = state[1];
   CHECK(first > 0.05);
   const int steps = 20000;
   const double angle = std::acos(0.) / steps;
   for (int n = 0; n < steps; ++n) sigma = m.advance(sigma, state, {{{0, -angle}, {angle, 0}}}, 1);
   CHECK_THAT(state[1], WithinRel(first, 1e-3));
-  CHECK_THAT(state[0], WithinAbs(0, 1e-3 * first));
-  const double measure = equivalent_plastic_deviatoric_strain(plastic_strain_in<2>(state));
+  CHECK_THAT(state[0], WithinRel(second, 1e-3));
+  // At the apex, where no deviator is left of the stress, it is that of the strain: 2/3 of the stretches.
+  const auto measure = [&] { return equivalent_plastic_deviatoric_strain(plastic_strain_in<2>(state)); };
+  CHECK_THAT(measure(), WithinRel(2. / 3 * 0.2, 1e-3));
   sigma = m.advance(sigma, state, {{{0, 0}, {0, 0.2}}}, 1);
-  CHECK(equivalent_plastic_deviatoric_strain(plastic_strain_in<2>(state)) > 2 * measure);
+  CHECK_THAT(measure(), WithinRel(2. / 3 * 0.4, 1e-3));
 }
 
 TEST_CASE("equivalent plastic deviatoric strain (34)") {
   // Uniaxial without volume: the axial strain. Pure shear of tensor component g: 2 g / sqrt(3).
-  CHECK_THAT(equivalent_plastic_deviatoric_strain<1, double>({{0.3, -0.15, -0.15}}), WithinRel(0.3, 1e-15));
-  CHECK_THAT(equivalent_plastic_deviatoric_strain<1, double>({{0.5, 0.05, 0.05}}), WithinRel(0.3, 1e-15));
-  CHECK_THAT(equivalent_plastic_deviatoric_strain<2, double>({{1, 1, 1, 0.3}}), WithinRel(0.6 / std::sqrt(3.), 1e-15));
-  CHECK_THAT(equivalent_plastic_deviatoric_strain<3, double>({{0, 0, 0, 0, 0, -0.3}}),
-             WithinRel(0.6 / std::sqrt(3.), 1e-15));
+  const auto uniaxial = [](double x, double y) {
+    return equivalent_plastic_deviatoric_strain(SymmetricTensor<1, double>{{x, y, y}});
+  };
+  CHECK_THAT(uniaxial(0.3, -0.15), WithinRel(0.3, 1e-15));
+  CHECK_THAT(uniaxial(0.5, 0.05), WithinRel(0.3, 1e-15));
+  const double shear = 0.6 / std::sqrt(3.);
+  const SymmetricTensor<2, double> plane{{1, 1, 1, 0.3}};
+  CHECK_THAT(equivalent_plastic_deviatoric_strain(plane), WithinRel(shear, 1e-15));
+  const SymmetricTensor<3, double> space{{0, 0, 0, 0, 0, -0.3}};
+  CHECK_THAT(equivalent_plastic_deviatoric_strain(space), WithinRel(shear, 1e-15));
 }
 
 TEST_CASE("single precision is right to its own digits") {
