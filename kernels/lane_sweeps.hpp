@@ -15,6 +15,7 @@
 /// RemapLanes adds M dt a to the nodes, and C begins with v_p <- v_p + dt sum_I N_Ip a_I.
 #pragma once
 
+#include <vsb/kernels/lane_plasticity.hpp>
 #include <vsb/kernels/lane_tractions.hpp>
 #include <vsb/physics/kinematics.hpp>
 #include <vsb/physics/next_cell.hpp>
@@ -169,6 +170,8 @@ struct MoveGroup {
     const auto sigma = lanes.load_stress(entry);
     if constexpr (remembered == 0) {
       lanes.store_row(lanes.stress_column, entry, material.advance(sigma, L, P(1)));
+    } else if constexpr (Material::plastic) {
+      advance_plastic_lanes(lanes, material, entry, sigma, L);
     } else {
       // Lane by lane: such materials branch.
       const LaneMask held = lanes.held(entry / P::width);
