@@ -24,7 +24,8 @@ struct LaneState {
   int gauss_points = 2;       ///< of these, per direction, 1 to 4
   long long repacked = 0;     ///< times
   int steps_since_repacked = 1000;
-  int leavers = 0;  ///< particles that left their cells in the last step
+  int leavers = 0;        ///< particles that left their cells in the last step
+  bool unmarked = false;  ///< cells turned void or filled since the boundary was marked
 
   bool cubic() const {
     for (int i = 1; i < Dim; ++i)
@@ -76,7 +77,21 @@ void mark_packed_lanes(const Exec& exec, LaneState<Dim, Real, Device>& s) {
   fit_boundary(exec, s.memory.lanes, s.boundary);
   update_occupied(exec, s.memory.lanes, s.boundary);
   mark_lanes(exec, s.memory.lanes, s.memory.grid.cells, s.boundary, true);
+  s.unmarked = false;
 }
+
+namespace detail {
+
+/// Marks the boundary anew where a field acts and cells turned void or filled; whether that was so.
+template <class Field, class Exec, int Dim, class Real, class Device>
+bool bring_marks_up_to_date(const Exec& exec, LaneState<Dim, Real, Device>& s) {
+  if (!s.unmarked || !(Field::loaded || s.original != 0)) return false;
+  mark_lanes(exec, s.memory.lanes, s.memory.grid.cells, s.boundary, false);
+  s.unmarked = false;
+  return true;
+}
+
+}  // namespace detail
 
 /// Packs the particles; s.memory.grid and walls and what s.boundary declares must be set. Returns -1, or the
 /// lowest number of a particle outside the grid.
@@ -103,10 +118,10 @@ void make_more_room(LaneState<Dim, Real, Device>& s, const HomelessCount& homele
 }
 
 /// Sums up for the first step, or anew after a change of loads; `virtual_stress` is the field at the end of
-/// the step to come. After steps without any field, or other declarations, mark_packed_lanes must come first:
-/// without a field, steps do not keep up the boundary.
+/// the step to come. After a change of declarations mark_packed_lanes must come first.
 template <class Exec, class Field, int Dim, class Real, class Device>
-void prepare_lane_step(const Exec& exec, const LaneState<Dim, Real, Device>& s, const Field& virtual_stress) {
+void prepare_lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Field& virtual_stress) {
+  detail::bring_marks_up_to_date<Field>(exec, s);
   detail::sum_lanes(exec, s, virtual_stress);
 }
 
@@ -117,6 +132,7 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
               const Volume& volume, const Field& next_virtual_stress, const StepOptions<Dim, Real>& options) {
   const ProfilingRegion region("vsb::lane_step");
   auto& m = s.memory;
+  detail::bring_marks_up_to_date<Field>(exec, s);
   const Kokkos::RangePolicy<Exec> over_chunks(exec, 0, m.lanes.node_count / m.lanes.width);
 
   Kokkos::parallel_for("vsb::update_lane_nodes", over_chunks,
@@ -164,8 +180,8 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
     detail::sum_lanes(exec, s, next_virtual_stress);
     return -1;
   }
-  const bool marked = update_occupied(exec, m.lanes, s.boundary) && (Field::loaded || s.original != 0);
-  if (marked) mark_lanes(exec, m.lanes, m.grid.cells, s.boundary, false);
+  if (update_occupied(exec, m.lanes, s.boundary)) s.unmarked = true;
+  const bool marked = detail::bring_marks_up_to_date<Field>(exec, s);
   if (!summed)
     detail::sum_lanes(exec, s, next_virtual_stress);
   else if (marked && Field::loaded)
