@@ -16,32 +16,42 @@ namespace vsb {
 
 namespace detail {
 
-template <class T>
-KOKKOS_INLINE_FUNCTION Vector<3, T> cross(const Vector<3, T>& a, const Vector<3, T>& b) {
-  return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}};
-}
-
 /// The root of x^3 - 3 x = 2 q that is furthest from the others, for |q| <= 1.
 template <class T>
 KOKKOS_INLINE_FUNCTION T separate_root(T q) {
   const T size = math::min(math::abs(q), T(1));
-  // Within 0.004 on the line between the roots for |q| = 0 and 1, and every iteration squares the error.
+  // Within 0.004 on the line between the roots for |q| = 0 and 1; Halley's iteration cubes the error.
   constexpr T sqrt_3 = T(1.7320508075688772);
   T x = sqrt_3 + (T(2) - sqrt_3) * size;
-  for (int n = 0; n < 3; ++n) x -= ((x * x - T(3)) * x - T(2) * size) / (T(3) * (x * x - T(1)));
+  for (int n = 0; n < 2; ++n) {
+    const T f = (x * x - T(3)) * x - T(2) * size, slope = T(3) * (x * x - T(1));
+    x -= f * slope / (slope * slope - T(3) * x * f);
+  }
   return q < T(0) ? -x : x;
 }
 
-/// The unit vector orthogonal to the rows of a symmetric tensor of rank 2.
+/// The unit vector orthogonal to the rows of a symmetric tensor of rank 2, whose cofactors are a multiple of
+/// n (x) n: their largest column.
 template <class T>
 KOKKOS_INLINE_FUNCTION Vector<3, T> null_direction(const Matrix<3, T>& a) {
-  Vector<3, T> row[3];
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) row[i][j] = a(i, j);
-  auto n = cross(row[0], row[1]);
-  for (const auto& other : {cross(row[1], row[2]), cross(row[2], row[0])})
-    if (dot(other, other) > dot(n, n)) n = other;
+  const auto c = cofactor(a);
+  Vector<3, T> n{{c(0, 0), c(1, 0), c(2, 0)}};
+  T largest = math::abs(c(0, 0));
+  for (int j = 1; j < 3; ++j) {
+    const bool larger = math::abs(c(j, j)) > largest;
+    for (int i = 0; i < 3; ++i) n[i] = larger ? c(i, j) : n[i];
+    largest = larger ? math::abs(c(j, j)) : largest;
+  }
   return (T(1) / math::sqrt(dot(n, n))) * n;
+}
+
+/// Two unit vectors orthogonal to n and to each other, without a branch (Duff et al., Building an
+/// orthonormal basis, revisited, 2017).
+template <class T>
+KOKKOS_INLINE_FUNCTION void across(const Vector<3, T>& n, Vector<3, T>& u, Vector<3, T>& w) {
+  const T sign = n[2] < T(0) ? T(-1) : T(1), a = T(-1) / (sign + n[2]), b = n[0] * n[1] * a;
+  u = {{T(1) + sign * n[0] * n[0] * a, sign * b, -sign * n[0]}};
+  w = {{b, sign + n[1] * n[1] * a, -n[1]}};
 }
 
 }  // namespace detail
@@ -53,24 +63,18 @@ KOKKOS_INLINE_FUNCTION PrincipalValues<Dim, T> principal_stresses(const Symmetri
     return principal_values(stress);
   } else {
     const T mean = mean_stress(stress), r = math::sqrt(second_invariant(stress, mean) / T(3));
-    if (!(r > T(0)) || !math::isfinite(r))
+    const T inverse_r = T(1) / r;
+    if (!(r > T(0)) || !math::isfinite(r) || !math::isfinite(inverse_r))
       return {{{stress[0], stress[1], stress[2]}}, Matrix<3, T>::identity()};
     Matrix<3, T> s;
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) s(i, j) = (stress(i, j) - (i == j ? mean : T(0))) / r;
+      for (int j = 0; j < 3; ++j) s(i, j) = (stress(i, j) - (i == j ? mean : T(0))) * inverse_r;
     const T x = detail::separate_root(T(0.5) * determinant(s));
     auto shifted = s;
     for (int i = 0; i < 3; ++i) shifted(i, i) -= x;
     const auto n = detail::null_direction(shifted);
-    // Two directions across n, the first one orthogonal to the axis that is furthest from n.
-    int least = 0;
-    for (int i = 1; i < 3; ++i)
-      if (math::abs(n[i]) < math::abs(n[least])) least = i;
-    Vector<3, T> axis = Vector<3, T>::zero();
-    axis[least] = T(1);
-    auto u = detail::cross(n, axis);
-    u *= T(1) / math::sqrt(dot(u, u));
-    const auto w = detail::cross(n, u);
+    Vector<3, T> u, w;
+    detail::across(n, u, w);
     const auto su = s * u, sw = s * w;
     Matrix<2, T> plane{{{dot(u, su), dot(u, sw)}, {dot(u, sw), dot(w, sw)}}}, turn = Matrix<2, T>::identity();
     detail::jacobi_rotation(plane, turn, 0, 1);
