@@ -140,8 +140,7 @@ size_t LaneEngine<Dim, Real>::bytes() const {
   const auto& p = state_.surface;
   return bytes(l.data, l.id, l.groups, l.layer_first, l.plane_first, l.group_at, l.chunk_at, n.data, n.fixed,
                b.bits.occupied, b.bits.exterior, b.bits.boundary, b.marked, b.active, b.tractions, p.cell,
-               p.xi, p.area, p.tractions, p.carrier, p.bins.bin, p.bins.order, p.bins.offset, p.bins.cursor,
-               p.bins.slot, p.bins.occupied);
+               p.xi, p.area, p.tractions, p.carrier, p.order, p.run_cell, p.run_first, p.cell_count);
 }
 
 template <int Dim, class Real>
