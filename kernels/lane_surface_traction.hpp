@@ -233,7 +233,8 @@ int sort_surface_points(const Exec& exec, const LaneMemory<Dim, Real, Device>& m
                         LaneSurfacePoints<Dim, Real, Device>& points) {
   const auto& box = m.lanes.box;
   for (int i = 0; i < Dim; ++i)
-    if (points.box.first[i] != box.first[i] || points.box.cells[i] != box.cells[i]) points.sorted = false;
+    points.sorted =
+        points.sorted && points.box.first[i] == box.first[i] && points.box.cells[i] == box.cells[i];
   if (points.sorted) return -1;
   const auto n = static_cast<size_t>(points.count()),
              cells = static_cast<size_t>(CellNumbering<Dim>{box.cells}.cell_count());

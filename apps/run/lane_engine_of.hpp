@@ -172,9 +172,11 @@ std::vector<unsigned char> LaneEngine<Dim, Real>::save() const {
   const auto sums = detail::on_host(m.nodes.data);
   for (int c = 0; c < 2 * m.nodes.sum_columns; ++c) w.array(&sums(0, static_cast<size_t>(c)), nodes);
   const auto& p = state_.surface;
-  w.array(detail::on_host(p.cell).data(), p.cell.span());
-  w.array(detail::on_host(p.xi).data(), p.xi.span());
-  w.array(detail::on_host(p.area).data(), p.area.span());
+  if (p.count() > 0) {
+    w.array(detail::on_host(p.cell).data(), p.cell.span());
+    w.array(detail::on_host(p.xi).data(), p.xi.span());
+    w.array(detail::on_host(p.area).data(), p.area.span());
+  }
   return std::move(w.result);
 }
 
@@ -219,7 +221,8 @@ bool LaneEngine<Dim, Real>::restore(const std::vector<unsigned char>& saved) {
     if (!r.array(&sums(0, static_cast<size_t>(c)), static_cast<size_t>(nodes))) return false;
   Kokkos::deep_copy(m.nodes.data, sums);
   auto& p = state_.surface;
-  if (!detail::read_view(r, p.cell) || !detail::read_view(r, p.xi) || !detail::read_view(r, p.area))
+  if (p.count() > 0 &&
+      (!detail::read_view(r, p.cell) || !detail::read_view(r, p.xi) || !detail::read_view(r, p.area)))
     return false;
   p.sorted = false;
   if (!r.at_end()) return false;
