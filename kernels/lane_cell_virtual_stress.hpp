@@ -91,10 +91,9 @@ struct SubtractWholeCells {
     for (int w = 0; w < static_cast<int>(marked.extent(1)); ++w)
       for (int b = 0; marked(row, w) >> b != 0; ++b) {
         if ((marked(row, w) >> b & 1) == 0) continue;
-        const auto ijk = node_ijk(row, 64 * w + b);
-        const int node = lanes.node_at(ijk);
+        const int node = lanes.node_at(row, 64 * w + b);
         const TractionMask chi = tractions(node) & original;
-        if (chi != 0) subtract(node, ijk, chi, gauss, corners);
+        if (chi != 0) subtract(node, node_ijk(row, 64 * w + b), chi, gauss, corners);
         if (b == 63) break;
       }
   }

@@ -56,44 +56,51 @@ struct UnpackSurfacePoint {
   }
 };
 
-/// Points by the cells of a box, as locate_particles asks for them.
+/// Sorts the points by cell; a single work item. There are few of them, and a sort is due whenever one on a
+/// face between cells goes to the other side: this is faster than to start half a dozen kernels. Gives the
+/// number of runs, and the lowest number of a point outside the grid less the number of points, or 0.
 template <int Dim, class Real, class Device>
-struct CellsOfPoints {
+struct SortSurfacePoints {
   LaneSurfacePoints<Dim, Real, Device> points;
-  KOKKOS_FUNCTION int count() const { return points.count(); }
-  KOKKOS_FUNCTION Vector<Dim, int> position_of(int b) const { return points.cell_of(b); }
-};
-template <int Dim>
-struct BinsOfBox {
   CellNumbering<Dim> grid;
-  CellBox<Dim> box;
 
-  KOKKOS_FUNCTION bool contains(const Vector<Dim, int>& cell) const {
-    for (int i = 0; i < Dim; ++i)
-      if (cell[i] < 0 || cell[i] >= grid.cells[i]) return false;
-    return true;
+  KOKKOS_FUNCTION void operator()(int, int& runs, int& lost) const {
+    const int n = points.count(), cells = CellNumbering<Dim>{points.box.cells}.cell_count();
+    const auto& count = points.cell_count;
+    for (int c = 0; c <= cells; ++c) count(c) = 0;
+    for (int b = n - 1; b >= 0; --b) {
+      const auto cell = points.cell_of(b);
+      ++count(number(cell));
+      if (!in_grid(cell)) lost = b - n;
+    }
+    int sum = 0;
+    for (int c = 0; c < cells; ++c) {
+      const int here = count(c);
+      count(c) = sum;
+      if (here == 0) continue;
+      points.run_cell(runs) = c;
+      points.run_first(runs++) = sum;
+      sum += here;
+    }
+    points.run_first(runs) = count(cells) = sum;
+    for (int b = 0; b < n; ++b) points.order(count(number(points.cell_of(b)))++) = b;
   }
-  KOKKOS_FUNCTION int bin(const Vector<Dim, int>& cell) const {
-    const CellNumbering<Dim> in_box{box.cells};
+  KOKKOS_FUNCTION bool in_grid(const Vector<Dim, int>& cell) const {
+    bool inside = true;
+    for (int i = 0; i < Dim; ++i) inside = inside && cell[i] >= 0 && cell[i] < grid.cells[i];
+    return inside;
+  }
+  /// Of a cell in the box; of all outside it the number of cells.
+  KOKKOS_FUNCTION int number(const Vector<Dim, int>& cell) const {
+    const CellNumbering<Dim> box{points.box.cells};
     Vector<Dim, int> c;
     for (int i = 0; i < Dim; ++i) {
-      c[i] = cell[i] - box.first[i];
-      if (c[i] < 0 || c[i] >= box.cells[i]) return in_box.cell_count();
+      c[i] = cell[i] - points.box.first[i];
+      if (c[i] < 0 || c[i] >= box.cells[i]) return box.cell_count();
     }
-    return in_box.cell_index(c);
+    return box.cell_index(c);
   }
 };
-
-/// Where the lanes keep the nodes of a cell, numbered as in multilinear.hpp; -1 where they do not.
-template <int Dim, class Real, class Device>
-KOKKOS_INLINE_FUNCTION void nodes_of_cell(const CellLanes<Dim, Real, Device>& lanes,
-                                          const Vector<Dim, int>& cell, int (&node)[1 << Dim]) {
-  for (int a = 0; a < 1 << Dim; ++a) {
-    auto ijk = cell;
-    for (int i = 0; i < Dim; ++i) ijk[i] += a >> i & 1;
-    node[a] = lanes.node_at(ijk);
-  }
-}
 
 /// The points of one cell: places and areas at the end of the step. Counts those that go to another cell.
 template <int Dim, class Real, class Device>
@@ -103,21 +110,17 @@ struct MoveLaneSurfacePoints {
   LaneSurfacePoints<Dim, Real, Device> points;
   UniformGrid<Dim, Real> grid;
 
-  KOKKOS_FUNCTION void operator()(int s, int& leaving) const {
-    const auto& bins = points.bins;
-    const int bin = bins.occupied(s), begin = bins.offset(bin), end = bins.offset(bin + 1);
+  KOKKOS_FUNCTION void operator()(int run, int& leaving) const {
+    const int cell = points.run_cell(run);
     int node[1 << Dim];
-    nodes_of_cell(lanes, points.cell_of(bins.order(begin)), node);
-    bool active = false;  // points outside the box have no such node
-    for (int a = 0; a < 1 << Dim; ++a) active = active || node[a] >= 0;
-    if (!active) return;
+    lanes.nodes_of_cell(cell / lanes.box.cells[0], cell % lanes.box.cells[0], node);
     CellPolynomial<Dim, Real> dx[Dim], u[Dim];
     for (int i = 0; i < Dim; ++i) {
       gather(nodes.displacement_column + i, node, dx[i]);
       gather(nodes.remapped_column + i, node, u[i]);
     }
-    for (int n = begin; n < end; ++n)
-      if (move(bins.order(n), dx, u)) ++leaving;
+    for (int n = points.run_first(run); n < points.run_first(run + 1); ++n)
+      if (move(points.order(n), dx, u)) ++leaving;
   }
   KOKKOS_FUNCTION void gather(int column, const int (&node)[1 << Dim], CellPolynomial<Dim, Real>& c) const {
     for (int a = 0; a < 1 << Dim; ++a) c[a] = node[a] < 0 ? Real(0) : *nodes.at(column, node[a]);
@@ -157,40 +160,38 @@ struct LoadLaneSurface {
   Field virtual_stress;
 
   KOKKOS_FUNCTION void operator()(int layer) const {
-    const auto& bins = points.bins;
     const int per_layer = CellNumbering<Dim>{lanes.box.cells}.cell_count() / lanes.layers();
-    for (int s = first_from(layer * per_layer); s < bins.occupied_count; ++s) {
-      const int bin = bins.occupied(s);
-      if (bin >= (layer + 1) * per_layer) return;
-      load(bins.offset(bin), bins.offset(bin + 1));
+    for (int run = first_from(layer * per_layer); run < points.runs; ++run) {
+      if (points.run_cell(run) >= (layer + 1) * per_layer) return;
+      load(run);
     }
   }
-  /// The first occupied bin of those from `bin` on.
-  KOKKOS_FUNCTION int first_from(int bin) const {
-    int low = 0, high = points.bins.occupied_count;
+  /// The first run in a cell of this number or a higher one.
+  KOKKOS_FUNCTION int first_from(int cell) const {
+    int low = 0, high = points.runs;
     while (low < high) {
       const int middle = (low + high) / 2;
-      if (points.bins.occupied(middle) < bin)
+      if (points.run_cell(middle) < cell)
         low = middle + 1;
       else
         high = middle;
     }
     return low;
   }
-  KOKKOS_FUNCTION void load(int begin, int end) const {
-    const auto cell = points.cell_of(points.bins.order(begin));
+  KOKKOS_FUNCTION void load(int run) const {
     CellPolynomial<Dim, Real> f[Dim];
     for (auto& moments : f) moments = CellPolynomial<Dim, Real>::zero();
-    for (int n = begin; n < end; ++n) {
-      const int b = points.bins.order(n);
+    for (int n = points.run_first(run); n < points.run_first(run + 1); ++n) {
+      const int b = points.order(n);
       const auto xi = points.xi_of(b);
-      const auto bar = virtual_stress.at(grid.map(cell, xi).x, points.tractions(b)).stress;
-      const auto force = bar * points.area_of(b);
+      const auto x = grid.map(points.cell_of(b), xi).x;
+      const auto force = virtual_stress.at(x, points.tractions(b)).stress * points.area_of(b);
       for (int i = 0; i < Dim; ++i) add_moments<Dim>(f[i], force[i], xi);
     }
     for (auto& moments : f) nodes_from_moments<Dim>(moments);
     int node[1 << Dim];
-    nodes_of_cell(lanes, cell, node);
+    const int cell = points.run_cell(run);
+    lanes.nodes_of_cell(cell / lanes.box.cells[0], cell % lanes.box.cells[0], node);
     for (int a = 0; a < 1 << Dim; ++a) {
       if (node[a] < 0) continue;  // without mass
       for (int i = 0; i < Dim; ++i) *nodes.at(nodes.sum_column(1 + Dim + i, a), node[a]) += f[i][a];
@@ -232,16 +233,26 @@ int sort_surface_points(const Exec& exec, const LaneMemory<Dim, Real, Device>& m
                         LaneSurfacePoints<Dim, Real, Device>& points) {
   const auto& box = m.lanes.box;
   for (int i = 0; i < Dim; ++i)
-    if (points.box.first[i] != box.first[i] || points.box.cells[i] != box.cells[i]) points.sorted = false;
+    points.sorted =
+        points.sorted && points.box.first[i] == box.first[i] && points.box.cells[i] == box.cells[i];
   if (points.sorted) return -1;
-  const int bins = CellNumbering<Dim>{box.cells}.cell_count() + 1;
-  if (static_cast<int>(points.bins.slot.extent(0)) != bins)
-    points.bins = allocate_bins<Device>(points.count(), bins);
+  const auto n = static_cast<size_t>(points.count()),
+             cells = static_cast<size_t>(CellNumbering<Dim>{box.cells}.cell_count());
+  using Ints = typename LaneSurfacePoints<Dim, Real, Device>::Ints;
+  if (points.order.extent(0) != n) {
+    points.order = Ints("vsb::lane_surface_order", n);
+    points.run_cell = Ints("vsb::lane_surface_runs", n);
+    points.run_first = Ints("vsb::lane_surface_run_first", n + 1);
+  }
+  if (points.cell_count.extent(0) != cells + 1)
+    points.cell_count = Ints("vsb::lane_surface_cells", cells + 1);
   points.box = box;
-  const auto where = locate_particles(exec, kernel::CellsOfPoints<Dim, Real, Device>{points}, points.bins,
-                                      kernel::BinsOfBox<Dim>{m.grid, box});
-  if (where.lost >= 0) return where.lost;
-  if (where.changed) sort_by_bin(exec, points.bins);
+  int lost = 0;
+  points.runs = 0;
+  Kokkos::parallel_reduce("vsb::sort_surface_points", Kokkos::RangePolicy<Exec>(exec, 0, 1),
+                          kernel::SortSurfacePoints<Dim, Real, Device>{points, m.grid}, points.runs, lost);
+  exec.fence();
+  if (lost < 0) return points.count() + lost;
   points.sorted = true;
   return -1;
 }
@@ -254,9 +265,9 @@ void move_surface_points(const Exec& exec, const LaneMemory<Dim, Real, Device>& 
   if (points.count() == 0) return;
   sort_surface_points(exec, m, points);
   int leaving = 0;
-  Kokkos::parallel_reduce(
-      "vsb::move_lane_surface", Kokkos::RangePolicy<Exec>(exec, 0, points.bins.occupied_count),
-      kernel::MoveLaneSurfacePoints<Dim, Real, Device>{m.lanes, m.nodes, points, m.grid}, leaving);
+  Kokkos::parallel_reduce("vsb::move_lane_surface", Kokkos::RangePolicy<Exec>(exec, 0, points.runs),
+                          kernel::MoveLaneSurfacePoints<Dim, Real, Device>{m.lanes, m.nodes, points, m.grid},
+                          leaving);
   exec.fence();
   if (leaving > 0) points.sorted = false;
 }

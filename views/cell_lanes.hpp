@@ -101,16 +101,18 @@ struct CellLanes {
     if constexpr (Dim == 2) return k + c;
     return (k + (c >> 1)) * node_rows_per_plane() + j + (c & 1);
   }
-  /// Where a node of the grid is kept, -1 where it is not: then no cell with particles has it.
-  KOKKOS_FUNCTION int node_at(const Vector<Dim, int>& ijk) const {
-    int row = 0;
-    for (int i = Dim - 1; i >= 0; --i) {
-      const int c = ijk[i] - box.first[i];
-      if (c < 0 || c > box.cells[i]) return -1;
-      if (i > 0) row = row * (box.cells[i] + 1) + c;
-    }
-    const int x = ijk[0] - box.first[0], chunk = chunk_at(row * (groups_per_row() + 1) + x / width);
+  /// Node x of a row of nodes of the box; -1 where it is not kept, since no cell around it is in a group.
+  KOKKOS_FUNCTION int node_at(int node_row, int x) const {
+    const int chunk = chunk_at(node_row * (groups_per_row() + 1) + x / width);
     return chunk < 0 ? -1 : chunk * width + x % width;
+  }
+  /// The nodes of cell x of a row of cells of the box, numbered as in multilinear.hpp.
+  KOKKOS_FUNCTION void nodes_of_cell(int row, int x, int (&node)[1 << Dim]) const {
+    for (int c = 0; c < LaneGroup<Dim>::corner_rows; ++c) {
+      const int along = node_row(row, c);
+      node[2 * c] = node_at(along, x);
+      node[2 * c + 1] = node_at(along, x + 1);
+    }
   }
   /// The grid's cell in a lane.
   KOKKOS_FUNCTION Vector<Dim, int> cell(const LaneGroup<Dim>& group, int lane) const {

@@ -14,14 +14,20 @@ namespace vsb {
 template <int Dim, class Real, class Device>
 struct LaneSurfacePoints {
   using Fields = Kokkos::View<Real**, Kokkos::LayoutRight, Device>;
+  using Ints = Kokkos::View<int*, Device>;
   Kokkos::View<int* [Dim], Device> cell;          ///< [point][Dim], of the grid
   Fields xi;                                      ///< [point][Dim]: place in the cell, in [0, 1)
   Fields area;                                    ///< [point][Dim]: as in SurfacePoints
   Kokkos::View<TractionMask*, Device> tractions;  ///< [point]: the tractions that act on it
-  Kokkos::View<int*, Device> carrier;             ///< [point]: see SurfaceCarrier
-  ParticleBins<Device> bins;                      ///< by cell of `box`; one more for points outside it
-  CellBox<Dim> box;
-  bool sorted = false;  ///< whether `bins` are up to date for `box`
+  Ints carrier;                                   ///< [point]: see SurfaceCarrier
+  CellBox<Dim> box;                               ///< of the lanes, when the points were sorted
+  Ints order;       ///< [point]: point numbers by cell of the box, increasing within a cell; those outside
+                    ///< the box last
+  Ints run_cell;    ///< [run of points in one cell]: number of the cell in the box, increasing
+  Ints run_first;   ///< [run + 1]: where it begins in `order`
+  Ints cell_count;  ///< [cell of the box + 1]: scratch of the sort
+  int runs = 0;     ///< of points in the box
+  bool sorted = false;  ///< whether all this is up to date for `box`
 
   KOKKOS_FUNCTION int count() const { return static_cast<int>(xi.extent(0)); }
   KOKKOS_FUNCTION Vector<Dim, int> cell_of(int b) const {

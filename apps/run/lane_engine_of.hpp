@@ -140,8 +140,8 @@ size_t LaneEngine<Dim, Real>::bytes() const {
   const auto& p = state_.surface;
   return bytes(l.data, l.id, l.held, l.mass_matrices, l.groups, l.layer_first, l.plane_first, l.group_at,
                l.chunk_at, n.data, n.fixed, b.bits.occupied, b.bits.exterior, b.bits.boundary, b.marked,
-               b.active, b.tractions, p.cell, p.xi, p.area, p.tractions, p.carrier, p.bins.bin, p.bins.order,
-               p.bins.offset, p.bins.cursor, p.bins.slot, p.bins.occupied);
+               b.active, b.tractions, p.cell, p.xi, p.area, p.tractions, p.carrier, p.order, p.run_cell,
+               p.run_first, p.cell_count);
 }
 
 template <int Dim, class Real>
@@ -176,9 +176,11 @@ std::vector<unsigned char> LaneEngine<Dim, Real>::save() const {
   for (int c = 0; c < 2 * m.nodes.sum_columns; ++c) w.array(&sums(0, static_cast<size_t>(c)), nodes);
   w.array(detail::on_host(l.mass_matrices).data(), l.mass_matrices.size());
   const auto& p = state_.surface;
-  w.array(detail::on_host(p.cell).data(), p.cell.span());
-  w.array(detail::on_host(p.xi).data(), p.xi.span());
-  w.array(detail::on_host(p.area).data(), p.area.span());
+  if (p.count() > 0) {
+    w.array(detail::on_host(p.cell).data(), p.cell.span());
+    w.array(detail::on_host(p.xi).data(), p.xi.span());
+    w.array(detail::on_host(p.area).data(), p.area.span());
+  }
   return std::move(w.result);
 }
 
@@ -234,7 +236,8 @@ bool LaneEngine<Dim, Real>::restore(const std::vector<unsigned char>& saved) {
   Kokkos::deep_copy(m.nodes.data, sums);
   if (!detail::read_view(r, l.mass_matrices)) return false;
   auto& p = state_.surface;
-  if (!detail::read_view(r, p.cell) || !detail::read_view(r, p.xi) || !detail::read_view(r, p.area))
+  if (p.count() > 0 &&
+      (!detail::read_view(r, p.cell) || !detail::read_view(r, p.xi) || !detail::read_view(r, p.area)))
     return false;
   p.sorted = false;
   if (!r.at_end()) return false;
