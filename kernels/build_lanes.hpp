@@ -300,12 +300,15 @@ struct FixLaneNodes {
 /// How often a step looks at all particles: as their number per cell makes it worth while.
 enum class Sweeps : std::uint8_t { chosen, one, two };
 
-/// Particles per cell from which one sweep is faster: the mass matrix is per cell, what it saves is per
-/// particle.
-template <int Dim>
-constexpr int worth_one_sweep = Dim == 1   ? 3
-                                : Dim == 2 ? 9
-                                           : 27;
+/// Whether one sweep is faster, as measured: the mass matrix is work per cell, what it saves is work per
+/// particle, and in 3D mostly memory traffic, which only counts where the particles do not fit into caches.
+template <int Dim, class Real, class Device>
+bool one_sweep_is_faster(const CellLanes<Dim, Real, Device>& lanes, int cells_with_particles) {
+  constexpr int per_cell = CellLanes<Dim, Real, Device>::mass_matrix_size;
+  constexpr double caches = 24e6;  // bytes
+  const double bytes = static_cast<double>(sizeof(Real)) * lanes.columns() * lanes.particle_count;
+  return lanes.particle_count >= per_cell * cells_with_particles && (Dim < 3 || bytes > caches);
+}
 
 /// What the cell lanes of a body need beside the particles.
 template <int Dim, class Real, class Device>
@@ -384,8 +387,8 @@ void number_nodes(const Exec& exec, LaneMemory<Dim, Real, Device>& m) {
                        kernel::FixLaneNodes<Dim, Real, Device>{lanes, m.nodes, m.grid.cells, m.walls});
 }
 
-/// Groups and nodes for a box and the number of particles in each of its cells; the columns and numbers of
-/// the particles are left to the caller.
+/// Groups and nodes for a box and the number of particles in each of its
+/// cells; the columns and numbers of the particles are left to the caller.
 template <class Exec, int Dim, class Real, class Device>
 void number_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const CellBox<Dim>& box,
                   const typename CellLanes<Dim, Real, Device>::Ints& count) {
@@ -427,11 +430,12 @@ void number_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const Cell
       "vsb::count_cells", Kokkos::RangePolicy<Exec>(exec, 0, static_cast<int>(count.extent(0))),
       KOKKOS_LAMBDA(int cell, int& n) { n += count(cell) > 0; }, cells);
   exec.fence();
-  set_sweeps(lanes, m.sweeps == Sweeps::one ||
-                        (m.sweeps == Sweeps::chosen && lanes.particle_count >= worth_one_sweep<Dim> * cells));
+  set_sweeps(lanes,
+             m.sweeps == Sweeps::one || (m.sweeps == Sweeps::chosen && one_sweep_is_faster(lanes, cells)));
 }
 
-/// Lists with room for all particles of their layers; memory that nobody writes to is not taken.
+/// Lists with room for all particles of their layers; memory that nobody
+/// writes to is not taken.
 template <class Exec, int Dim, class Real, class Device>
 void allocate_leavers(const Exec& exec, LaneMemory<Dim, Real, Device>& m) {
   const auto& lanes = m.lanes;
@@ -461,8 +465,9 @@ struct GroupShape {
   int x, row, slots, capacity;
 };
 
-/// Lays lanes out as others were; columns and numbers of the particles are left to the caller. False where
-/// that makes no sense, and then nothing is changed.
+/// Lays lanes out as others were; columns and numbers of the particles are
+/// left to the caller. False where that makes no sense, and then nothing is
+/// changed.
 template <class Exec, int Dim, class Real, class Device>
 bool lay_out_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const CellBox<Dim>& box,
                    const std::vector<GroupShape>& shape) {
@@ -499,7 +504,8 @@ bool lay_out_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const Cel
   return true;
 }
 
-/// Packs particles that all lie in the grid. Returns -1, or the lowest number of one that does not.
+/// Packs particles that all lie in the grid. Returns -1, or the lowest number
+/// of one that does not.
 template <class Exec, int Dim, class Real, class Device>
 int pack_particles(const Exec& exec, const Particles<Dim, Real, Device>& particles,
                    LaneMemory<Dim, Real, Device>& m) {
@@ -513,7 +519,8 @@ int pack_particles(const Exec& exec, const Particles<Dim, Real, Device>& particl
                               kernel::CellRange<Dim, Real, Device>{particles, m.grid, i, sign},
                               Kokkos::Min<int>(found));
       exec.fence();
-      // A reduction over nothing, or over particles outside alone, leaves the largest number there is.
+      // A reduction over nothing, or over particles outside alone, leaves the
+      // largest number there is.
       const int cell = found == std::numeric_limits<int>::max() ? 0 : sign * found;
       (sign > 0 ? lowest : highest)[i] = cell;
     }

@@ -24,7 +24,7 @@ struct LaneState {
   int gauss_points = 2;       ///< of these, per direction, 1 to 4
   long long repacked = 0;     ///< times
   int steps_since_repacked = 1000;
-  int leavers = 0;        ///< particles that left their cells in the last step
+  int steps_of_flow = 0;  ///< the last ones in a row in which many particles left their cells
   bool unmarked = false;  ///< cells turned void or filled since the boundary was marked
 
   bool cubic() const {
@@ -149,7 +149,7 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
       kernel::RemapLaneNodes<Dim, Real, Device>{{m.nodes}, options.dt * m.grid.inverse_spacing[0]});
   // Where many are about to leave, the nodes' sums wait for them: another sweep costs less than adding them
   // one by one.
-  bool summed = s.leavers < m.lanes.particle_count / 50;
+  bool summed = s.steps_of_flow < 2;
   detail::with_cubic(s, [&](auto cubic) {
     Kokkos::parallel_for(
         "vsb::move_lanes", detail::over_layers(exec, s),
@@ -161,12 +161,13 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
   });
   move_surface_points(exec, m, s.surface);
   ++s.steps_since_repacked;
-  s.leavers = count_leavers(exec, m);
-  if (s.leavers == 0) {
+  const int leavers = count_leavers(exec, m);
+  s.steps_of_flow = leavers > m.lanes.particle_count / 50 ? math::min(s.steps_of_flow + 1, 2) : 0;
+  if (leavers == 0) {
     if (!summed) detail::sum_lanes(exec, s, next_virtual_stress);
     return -1;
   }
-  summed = summed && s.leavers < m.lanes.particle_count / 16;
+  summed = summed && leavers < m.lanes.particle_count / 16;
   // Holes cost as much as particles; to close them costs as much as a particle's way.
   const bool closing = s.steps_since_repacked % 8 == 0;
   const auto homeless = take_in_leavers(exec, m, next_virtual_stress, s.boundary.tractions, summed, closing);

@@ -33,17 +33,20 @@ KOKKOS_FORCEINLINE_FUNCTION void moments_of(const CellLanes<Dim, Real, Device>& 
     add_moments<Dim>(m, lanes.load(weight, entry), lanes.load_xi(entry));
 }
 
-/// Stores the mass matrices of a group's cells.
-template <int Dim, class Real, class Device>
-[[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void store_mass_matrices(
-    const CellLanes<Dim, Real, Device>& lanes, int g) {
-  using P = typename Lanes<Real>::Pack;
-  const auto& group = lanes.groups(g);
+/// Stores the mass matrices of a group's cells; m are the masses at their nodes.
+template <int Dim, class Real, class Device, class P>
+[[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void mass_matrices(const CellLanes<Dim, Real, Device>& lanes,
+                                                                   const LaneGroup<Dim>& group,
+                                                                   CellPolynomial<Dim, P>& m) {
+  const int g = lanes.number_of(group);
   CellMassMatrix<Dim, P> M;
   static_for<M.size>([&](auto k) VSB_UNROLLED { M[k] = P(0); });
   for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width)
     add_mass<Dim>(M, lanes.load(lanes.mass_column, entry), lanes.load_xi(entry));
   static_for<M.size>([&](auto k) VSB_UNROLLED { M[k].store(lanes.mass_matrix_at(g, k)); });
+  CellPolynomial<Dim, P> one;
+  static_for<one.size>([&](auto a) VSB_UNROLLED { one[a] = P(Real(1)); });
+  m = times<Dim>(M, one);
 }
 
 /// The moments of momentum.
@@ -99,8 +102,13 @@ KOKKOS_FORCEINLINE_FUNCTION void add_mass_and_momentum(const CellLanes<Dim, Real
                                                        const LaneGroup<Dim>& group,
                                                        StepSums<Dim, Real, Device>& sums) {
   CellPolynomial<Dim, typename Lanes<Real>::Pack> m, p[Dim];
-  moments_of(lanes, group, lanes.mass_column, m);
-  sums.add_moments(0, group, m);
+  if (lanes.one_sweep()) {
+    mass_matrices(lanes, group, m);
+    sums.add(0, group, m);
+  } else {
+    moments_of(lanes, group, lanes.mass_column, m);
+    sums.add_moments(0, group, m);
+  }
   momentum(lanes, group, p);
   static_for<Dim>([&](auto i) VSB_UNROLLED { sums.add_moments(1 + i, group, p[i]); });
 }

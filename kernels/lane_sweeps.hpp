@@ -40,7 +40,6 @@ struct SumLanes {
       if (group.slots == 0) continue;
       sums.begin(group);
       sum_group_with<Cubic>(on, group, virtual_stress, sums);
-      if (on.lanes.one_sweep()) lane_sums::store_mass_matrices(on.lanes, g);
     }
     sums.end();
   }
@@ -314,7 +313,6 @@ struct MoveLanes {
       accelerate_and_move(group, layer);
       sums.begin(group);
       sum_group_with<Cubic>(on, group, virtual_stress, sums);
-      if (on.lanes.one_sweep()) lane_sums::store_mass_matrices(on.lanes, g);
     }
     sums.end();
   }

@@ -159,6 +159,10 @@ struct CellLanes {
     static_for<stress_size>([&](auto c) VSB_UNROLLED { s[c] = load(stress_column + c, entry); });
     return s;
   }
+  /// The number of one of `groups`.
+  KOKKOS_FORCEINLINE_FUNCTION int number_of(const LaneGroup<Dim>& group) const {
+    return static_cast<int>(&group - groups.data());
+  }
   /// The number of a group, or -1 where there is none; x in groups.
   KOKKOS_FUNCTION int group_of(int row, int x) const {
     return x < 0 || x >= groups_per_row() ? -1 : group_at(row * groups_per_row() + x);

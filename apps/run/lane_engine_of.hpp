@@ -159,7 +159,7 @@ std::vector<unsigned char> LaneEngine<Dim, Real>::save() const {
   w.number(m.slack);
   w.number(m.reach);
   w.number(state_.steps_since_repacked);
-  w.number(state_.leavers);
+  w.number(state_.steps_of_flow);
   w.number(prepared_);
   w.number(l.one_sweep());
   const auto groups = detail::on_host(l.groups);
@@ -188,12 +188,12 @@ template <int Dim, class Real>
 bool LaneEngine<Dim, Real>::restore(const std::vector<unsigned char>& saved) {
   detail::Reader r(saved);
   auto& m = state_.memory;
-  int width = 0, groups = 0, slots = 0, nodes = 0, slack = 0, since = 0, leavers = 0;
+  int width = 0, groups = 0, slots = 0, nodes = 0, slack = 0, since = 0, flow = 0;
   CellBox<Dim> box;
   Reach<Dim> reach;
   bool prepared = false, one_sweep = false;
   if (!r.number(width) || width != m.lanes.width || !r.number(box) || !r.number(groups) || !r.number(slots) ||
-      !r.number(nodes) || !r.number(slack) || !r.number(reach) || !r.number(since) || !r.number(leavers) ||
+      !r.number(nodes) || !r.number(slack) || !r.number(reach) || !r.number(since) || !r.number(flow) ||
       !r.number(prepared) || !r.number(one_sweep) || groups < 0 || slots < 0 || nodes < 0)
     return false;
   if (static_cast<size_t>(groups) > saved.size()) return false;
@@ -205,7 +205,7 @@ bool LaneEngine<Dim, Real>::restore(const std::vector<unsigned char>& saved) {
   m.slack = slack;
   m.reach = reach;
   state_.steps_since_repacked = since;
-  state_.leavers = leavers;
+  state_.steps_of_flow = flow;
   auto& l = m.lanes;
   const size_t entries = static_cast<size_t>(slots) * l.width;
   const auto id = Kokkos::create_mirror_view(l.id);

@@ -51,24 +51,21 @@ TEMPLATE_TEST_CASE_SIG("one sweep: bodies against walls", "", ((int Dim), Dim), 
 }
 
 TEMPLATE_TEST_CASE_SIG("particles per cell decide between one sweep and two", "", ((int Dim), Dim), 1, 2, 3) {
-  for (const int along : {2, 3, 4}) {
-    const auto grid = make_grid<Dim, double>({{6, 5, 4}});
-    const int per_cell = Dim == 1 ? along : Dim == 2 ? along * along : along * along * along;
-    auto block = allocate_particles<Dim, double, Device>(per_cell);
-    edit(block, [&](const auto& p) {
-      for (int k = 0; k < per_cell; ++k) {
-        int rest = k;
-        for (int i = 0; i < Dim; ++i, rest /= along)
-          p.position(k, i) = grid.lower[i] + grid.spacing[i] * (2 + (rest % along + 0.5) / along);
-        p.mass(k) = p.volume(k) = 1;
-      }
-    });
+  // In 3D the particles must be too many for caches, too: 27 in each of 8000 cells are, 64 in each of 100 are
+  // not.
+  const auto one_sweep = [](int along, int cells) {
+    const auto grid = make_grid<Dim, double>({{cells, cells, cells}});
+    const auto block = fill_cells<Dim, double>(grid, along, 1., [](const Vector<Dim, int>&) { return true; });
     LaneState<Dim, double, Device> s;
     s.memory.grid = grid;
     REQUIRE(pack_lanes(Exec(), block.particles, s) == -1);
-    CHECK(s.memory.lanes.one_sweep() == (along > 2));
-    s.memory.sweeps = Sweeps::two;
+    const bool one = s.memory.lanes.one_sweep();
+    s.memory.sweeps = one ? Sweeps::two : Sweeps::one;
     REQUIRE(pack_lanes(Exec(), block.particles, s) == -1);
-    CHECK(!s.memory.lanes.one_sweep());
-  }
+    CHECK(s.memory.lanes.one_sweep() == !one);
+    return one;
+  };
+  CHECK(!one_sweep(2, 20));
+  CHECK(one_sweep(3, 20));
+  CHECK(one_sweep(4, 5) == (Dim < 3));
 }
