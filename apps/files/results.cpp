@@ -141,6 +141,7 @@ void Results::write_frame(const Snapshot& s, const ExactFields& exact) {
   if (wanted("cauchy_stress")) field("cauchy_stress", s.cauchy_stress, 6);
   if (!s.recovered_stress.empty() && wanted("recovered_stress"))
     field("recovered_stress", s.recovered_stress, 6);
+  if (!s.plastic_strain.empty()) field("equivalent_plastic_strain", s.plastic_strain, 1);
   if (wanted("volume")) field("volume", s.volume, 1);
   if (wanted("mass")) field("mass", s.mass, 1);
   if (wanted("in_boundary")) field("in_boundary", s.in_boundary, 1);
@@ -198,6 +199,14 @@ void Results::write_checkpoint(const SavedState& saved) {
   file.attribute("checkpoint", "bytes_per_number",
                  std::vector<std::int64_t>{static_cast<std::int64_t>(saved.bytes_per_number)});
   file.dataset("checkpoint/particles", saved.particles, {saved.particles.size()});
+  if (scene_.removal) {
+    const auto& staged = saved.staged;
+    file.group("staged");
+    file.attribute("staged", "loads_begin", std::vector<std::int64_t>{staged.loads_begin});
+    file.dataset("staged/present", staged.present, {staged.present.size()});
+    const std::vector<unsigned char> stages(staged.stages.begin(), staged.stages.end());
+    file.dataset("staged/stages", stages, {stages.size()});
+  }
   write_provenance(file, scene_);
   file.commit();
 }
@@ -219,8 +228,17 @@ std::optional<SavedState> Results::read_checkpoint() const {
   if (file.text("provenance", "scene") != scene_.resolved)
     throw FileError(fmt::format(
         "{}: written for another scene (or other --set values); remove it, or run without --resume", name));
-  return SavedState{number("step"), static_cast<size_t>(number("bytes_per_number")),
-                    file.bytes("checkpoint/particles")};
+  SavedState saved{number("step"),
+                   static_cast<size_t>(number("bytes_per_number")),
+                   file.bytes("checkpoint/particles"),
+                   {}};
+  if (scene_.removal) {
+    const auto stages = file.bytes("staged/stages");
+    saved.staged.present = file.bytes("staged/present");
+    saved.staged.stages.assign(stages.begin(), stages.end());
+    saved.staged.loads_begin = file.integers("staged", "loads_begin").at(0);
+  }
+  return saved;
 }
 
 std::optional<long long> Results::checkpoint_step() const {

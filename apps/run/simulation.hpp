@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -43,7 +44,8 @@ struct Snapshot {
   std::vector<unsigned char> in_boundary;  ///< 1 where a particle contributes to a node with a traction
   std::vector<PlacedBody> bodies;          ///< which particles are whose
   std::vector<double>
-      recovered_stress;  ///< as cauchy_stress; empty unless run/recovered_stress.hpp filled it
+      recovered_stress;                ///< as cauchy_stress; empty unless run/recovered_stress.hpp filled it
+  std::vector<double> plastic_strain;  ///< equivalent deviatoric, Eq. (34); empty without a plastic body
 
   size_t count() const { return id.size(); }
 };
@@ -76,11 +78,25 @@ struct StaticSolution {
   BalanceReport balance;      ///< at the initial positions
 };
 
+/// What a run that removes particles in stages (run/stages.hpp) has beside the particles that are left.
+struct StagedState {
+  std::vector<unsigned char> present;  ///< [particle at the start]: 1 where it is left
+  long long loads_begin = 0;           ///< the step of the last reset
+  std::string stages;                  ///< of run/stages.hpp
+};
+
+/// How a run goes on after a removal of particles.
+struct Restart {
+  bool reset = false;             ///< from the state of the start, loads included; else from the present one
+  std::optional<double> damping;  ///< Cundall's alpha from now on, where it changes
+};
+
 /// The complete state of a run, bit by bit, for checkpoints.
 struct SavedState {
   long long step = 0;
   size_t bytes_per_number = 0;
   std::vector<unsigned char> particles;  ///< raw columns without padding, surface points, void filter
+  StagedState staged;
 };
 
 class Simulation {
@@ -89,6 +105,8 @@ class Simulation {
 
   virtual int particle_count() const = 0;
   virtual long long step() const = 0;
+  /// The time that the loads have acted, s: since the start, or since the last reset.
+  virtual double load_time() const = 0;
   virtual int boundary_nodes() const = 0;
   /// Of the bodies with cut lattices, at the start.
   virtual CutVolume cut_volume() const = 0;
@@ -115,6 +133,13 @@ class Simulation {
   virtual BalanceReport balance_under_loads_at(double t) = 0;
   virtual Snapshot snapshot() = 0;
   virtual GridSnapshot grid_snapshot() = 0;
+  /// The equivalent plastic deviatoric strain (Eq. 34) of every particle, smoothed over the nodes or as it
+  /// is. Zero in bodies that are not plastic.
+  virtual std::vector<double> plastic_strain(bool smoothed) = 0;
+  /// Volume of the particles with a plastic strain, m^3 (m^2 in 2D).
+  virtual double yielded_volume() = 0;
+  /// Removes the particles with a 1; those that stay keep order and ids. Steps are counted on.
+  virtual void remove(const std::vector<unsigned char>& removed, const Restart& restart) = 0;
   virtual SavedState save() const = 0;
   /// Throws SetupError where the saved state does not fit this scene.
   virtual void restore(const SavedState& saved) = 0;

@@ -14,6 +14,7 @@
 #include "scene/read_lattice.hpp"
 #include "scene/read_moment_fit.hpp"
 #include "scene/read_region.hpp"
+#include "scene/read_removal.hpp"
 #include "scene/read_stress_field.hpp"
 #include "scene/scene.hpp"
 #include "scene/toml_reader.hpp"
@@ -400,7 +401,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
   ResolvedTable resolved;
   TableReader r(document, "", resolved);
   r.allow_only({"name", "title", "setting", "dimension", "precision", "gravity", "grid", "faces", "body",
-                "traction", "method", "time", "static", "output", "compare", "published"});
+                "traction", "method", "time", "static", "removal", "output", "compare", "published"});
   Scene scene;
   scene.name = r.text("name", std::filesystem::path(path).stem().string());
   if (scene.name.empty() || scene.name.find_first_of("/\\ \t\n") != std::string::npos ||
@@ -451,6 +452,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
         "nothing loads the bodies (no traction, gravity, initial stress or velocity), so there is no static "
         "state to run to");
   scene.static_solution = read_static(r.table("static"));
+  scene.removal = read_removal(r, scene);
   scene.output = read_output(r.table("output"), scene.method.basis);
   scene.compare = read_comparison(r, scene.bodies.front().material, scene.method.basis, scene.more_norms);
   for (auto& table : r.tables("published")) scene.published.push_back(read_published(table, scene));

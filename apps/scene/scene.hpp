@@ -13,6 +13,7 @@
 #include "scene/grid_spec.hpp"
 #include "scene/lattice.hpp"
 #include "scene/region.hpp"
+#include "scene/removal_spec.hpp"
 #include "scene/stress_field.hpp"
 #include "scene/time_function.hpp"
 
@@ -33,6 +34,11 @@ struct ElasticSpec {
   MaterialLaw law;
   double youngs_modulus, poisson_ratio;
 };
+
+/// Whether a material has a plastic strain.
+inline bool is_plastic(const ElasticSpec& material) {
+  return material.law == MaterialLaw::hencky;  // TODO
+}
 
 struct BodySpec {
   std::string name;
@@ -164,6 +170,7 @@ struct Scene {
   MethodSpec method;
   TimeSpec time;
   StaticSpec static_solution;
+  std::optional<RemovalSpec> removal;
   OutputSpec output;
   Comparison compare;
   MoreNorms more_norms;

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/stages.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace vsb::app {
+
+namespace {
+
+/// Where a run diverged, the share of failed particles from which on this counts as collapse.
+constexpr double most = 0.5;
+
+/// The particles beyond the threshold, NaN among them.
+std::vector<unsigned char> beyond(const std::vector<double>& measure, double threshold) {
+  std::vector<unsigned char> failed(measure.size());
+  std::transform(measure.begin(), measure.end(), failed.begin(),
+                 [&](double q) -> unsigned char { return q <= threshold ? 0 : 1; });
+  return failed;
+}
+
+int count(const std::vector<unsigned char>& failed) {
+  return static_cast<int>(std::count(failed.begin(), failed.end(), 1));
+}
+
+}  // namespace
+
+Stages::Stages(const Scene& scene, Simulation& simulation)
+    : scene_(scene), removal_(*scene.removal), simulation_(simulation) {
+  present_.assign(static_cast<size_t>(simulation.particle_count()), 1);
+}
+
+void Stages::restore(const StagedState& saved) {
+  present_ = saved.present;
+  report_ = stages_of_toml(saved.stages);
+  // The last one is the stage that was under way.
+  first_step_ = report_.stages.back().first_step;
+  seconds_before_ = report_.stages.back().seconds;
+  report_.stages.pop_back();
+}
+
+SavedState Stages::with_stages(SavedState saved, double seconds) const {
+  auto report = report_;
+  report.stages.push_back(present_stage(seconds));
+  saved.staged.stages = to_toml(report);
+  return saved;
+}
+
+StageReport Stages::present_stage(double seconds) const {
+  StageReport stage;
+  stage.first_step = first_step_;
+  stage.last_step = simulation_.step();
+  stage.particles = simulation_.particle_count();
+  stage.seconds = seconds_before_ + seconds;
+  return stage;
+}
+
+bool Stages::has_failed() {
+  last_failed_ = count(beyond(simulation_.plastic_strain(false), removal_.threshold));
+  return last_failed_ >= removal_.collapse * simulation_.particle_count();
+}
+
+bool Stages::end(bool at_rest, double force_ratio, double seconds) {
+  auto stage = present_stage(seconds);
+  stage.at_rest = at_rest;
+  stage.force_ratio = force_ratio;
+  stage.yielded = simulation_.yielded_volume();
+  const auto measure = simulation_.plastic_strain(removal_.remap);
+  const auto failed = beyond(measure, removal_.threshold);
+  stage.failed = count(failed);
+  stage.largest = *std::max_element(measure.begin(), measure.end());
+  if (removal_.hole) stage.zone = zone_of(failed);
+
+  auto& outcome = report_.outcome;
+  if (stage.share() >= removal_.collapse) {
+    outcome = "collapse";
+    report_.reason =
+        fmt::format("{:.3g} % of the particles that were left are beyond the threshold", 100 * stage.share());
+  } else if (!at_rest) {
+    outcome = "collapse";
+    report_.reason = fmt::format(
+        "stage {} found no rest within max_steps = {} (force ratio {:.2e}; {:.3g} % of the particles are "
+        "beyond the threshold)",
+        number(), scene_.time.steps, force_ratio, 100 * stage.share());
+  } else if (stage.failed == 0) {
+    outcome = "steady";
+    report_.reason = "no particle is beyond the threshold";
+  } else if (number() == removal_.max_stages) {
+    outcome = "max_stages";
+    report_.reason = fmt::format("particles are beyond the threshold after max_stages = {}", number());
+  } else {
+    stage.removed = true;
+  }
+  report_.stages.push_back(stage);
+  if (!stage.removed) return false;
+
+  size_t n = 0;
+  for (auto& present : present_)
+    if (present != 0) present = failed[n++] == 0;
+  Restart restart;
+  restart.reset = removal_.reset;
+  if (!removal_.reset) restart.damping = removal_.damping;
+  simulation_.remove(failed, restart);
+  first_step_ = simulation_.step();
+  seconds_before_ = 0;
+  last_failed_ = 0;
+  return true;
+}
+
+bool Stages::end_diverged(const std::string& message, double seconds) {
+  auto stage = present_stage(seconds);
+  stage.failed = last_failed_;
+  if (stage.share() < most) return false;
+  report_.stages.push_back(stage);
+  report_.outcome = "collapse";
+  report_.reason = fmt::format("the run diverged, {:.3g} % of the particles beyond the threshold: {}",
+                               100 * stage.share(), message);
+  return true;
+}
+
+FailedZone Stages::zone_of(const std::vector<unsigned char>& failed) const {
+  std::vector<Fate> fate(present_.size(), Fate::gone);
+  size_t n = 0;
+  for (size_t id = 0; id < present_.size(); ++id)
+    if (present_[id] != 0) fate[id] = failed[n++] != 0 ? Fate::failed : Fate::present;
+  return measure_failed_zone(*removal_.hole, scene_.dimension, place_particles(scene_).position, fate);
+}
+
+}  // namespace vsb::app
