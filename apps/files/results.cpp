@@ -141,7 +141,6 @@ void Results::write_frame(const Snapshot& s, const ExactFields& exact) {
   if (wanted("cauchy_stress")) field("cauchy_stress", s.cauchy_stress, 6);
   if (!s.recovered_stress.empty() && wanted("recovered_stress"))
     field("recovered_stress", s.recovered_stress, 6);
-  if (!s.plastic_strain.empty()) field("equivalent_plastic_strain", s.plastic_strain, 1);
   if (wanted("volume")) field("volume", s.volume, 1);
   if (wanted("mass")) field("mass", s.mass, 1);
   if (wanted("in_boundary")) field("in_boundary", s.in_boundary, 1);

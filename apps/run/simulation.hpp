@@ -45,7 +45,6 @@ struct Snapshot {
   std::vector<PlacedBody> bodies;          ///< which particles are whose
   std::vector<double>
       recovered_stress;                ///< as cauchy_stress; empty unless run/recovered_stress.hpp filled it
-  std::vector<double> plastic_strain;  ///< equivalent deviatoric, Eq. (34); empty without a plastic body
 
   size_t count() const { return id.size(); }
 };
@@ -135,7 +134,7 @@ class Simulation {
   virtual GridSnapshot grid_snapshot() = 0;
   /// The equivalent plastic deviatoric strain (Eq. 34) of every particle, smoothed over the nodes or as it
   /// is. Zero in bodies that are not plastic.
-  virtual std::vector<double> plastic_strain(bool smoothed) = 0;
+  virtual std::vector<double> equivalent_plastic_strain(bool smoothed) = 0;
   /// Volume of the particles with a plastic strain, m^3 (m^2 in 2D).
   virtual double yielded_volume() = 0;
   /// Removes the particles with a 1; those that stay keep order and ids. Steps are counted on.

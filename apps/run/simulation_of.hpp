@@ -217,17 +217,16 @@ class SimulationOf final : public Simulation {
       s.volume[i] = p.volume(i);
       s.mass[i] = p.mass(i);
     }
-    if (has_plastic_body()) s.plastic_strain = plastic_strain(false);
     return s;
   }
 
-  std::vector<double> plastic_strain(bool smoothed) override {
+  std::vector<double> equivalent_plastic_strain(bool smoothed) override {
     unpack();
     const Kokkos::View<Real*, Device> strain("vsb::plastic_strain", static_cast<size_t>(particle_count()));
-    for (size_t b = 0; b < bodies_.size(); ++b)
-      if (is_plastic(scene_.bodies[b].material))
-        equivalent_plastic_strain(exec_, state_.particles, bodies_[b].first, bodies_[b].last,
-                                  bodies_[b].state_offset, strain);
+    for (const auto& body : bodies_)
+      if (is_plastic(body.material))
+        vsb::equivalent_plastic_strain(exec_, state_.particles, body.first, body.last, body.state_offset,
+                                       strain);
     if (smoothed) {
       locate();
       smooth_particles(exec_, state_.particles, state_.occupancy.bins, basis_, strain, options_.scatter);
@@ -238,7 +237,7 @@ class SimulationOf final : public Simulation {
   }
 
   double yielded_volume() override {
-    const auto strain = plastic_strain(false);
+    const auto strain = equivalent_plastic_strain(false);
     const auto host = host_copy(block_);
     double sum = 0;
     for (size_t p = 0; p < strain.size(); ++p)
@@ -363,11 +362,6 @@ class SimulationOf final : public Simulation {
             state_.surface.position.span() + state_.surface.area.span()) *
                sizeof(Real) +
            state_.occupancy.cells.outside.span() * sizeof(std::uint64_t);
-  }
-
-  bool has_plastic_body() const {
-    return std::any_of(scene_.bodies.begin(), scene_.bodies.end(),
-                       [](const BodySpec& body) { return is_plastic(body.material); });
   }
 
   /// Takes particles out of everything that counts them.

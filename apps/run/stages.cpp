@@ -58,7 +58,7 @@ StageReport Stages::present_stage(double seconds) const {
 }
 
 bool Stages::has_failed() {
-  last_failed_ = count(beyond(simulation_.plastic_strain(false), removal_.threshold));
+  last_failed_ = count(beyond(simulation_.equivalent_plastic_strain(false), removal_.threshold));
   return last_failed_ >= removal_.collapse * simulation_.particle_count();
 }
 
@@ -67,7 +67,7 @@ bool Stages::end(bool at_rest, double force_ratio, double seconds) {
   stage.at_rest = at_rest;
   stage.force_ratio = force_ratio;
   stage.yielded = simulation_.yielded_volume();
-  const auto measure = simulation_.plastic_strain(removal_.remap);
+  const auto measure = simulation_.equivalent_plastic_strain(removal_.remap);
   const auto failed = beyond(measure, removal_.threshold);
   stage.failed = count(failed);
   stage.largest = *std::max_element(measure.begin(), measure.end());

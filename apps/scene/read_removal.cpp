@@ -14,7 +14,7 @@ std::string obstacle(const Scene& scene) {
   if (!scene.time.until_static)
     return "needs time.until_static: a stage ends when the body is static (max_steps holds for each stage)";
   if (std::none_of(scene.bodies.begin(), scene.bodies.end(),
-                   [](const BodySpec& b) { return is_plastic(b.material); }))
+                   [](const BodySpec& b) { return is_plastic(b.material.law); }))
     return "needs a body of a plastic material: no other one has a plastic strain";
   if (scene.method.void_filter) return "is not for method.void_filter: what is removed leaves a void inside";
   for (const auto& traction : scene.tractions)

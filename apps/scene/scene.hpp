@@ -35,11 +35,6 @@ struct ElasticSpec {
   double youngs_modulus, poisson_ratio;
 };
 
-/// Whether a material has a plastic strain.
-inline bool is_plastic(const ElasticSpec& material) {
-  return material.law == MaterialLaw::hencky;  // TODO
-}
-
 struct BodySpec {
   std::string name;
   Region region;
