@@ -11,6 +11,7 @@
 /// The nodes bring dt a, dt v in cells and dt v* in cells, so that only sums are left for the particles.
 #pragma once
 
+#include <vsb/kernels/lane_plasticity.hpp>
 #include <vsb/kernels/lane_tractions.hpp>
 #include <vsb/physics/kinematics.hpp>
 
@@ -121,6 +122,8 @@ struct MoveGroup {
     const auto sigma = lanes.load_stress(entry);
     if constexpr (remembered == 0) {
       lanes.store_row(lanes.stress_column, entry, material.advance(sigma, L, P(1)));
+    } else if constexpr (Material::plastic) {
+      advance_plastic_lanes(lanes, material, entry, sigma, L);
     } else {
       // Lane by lane: such materials branch.
       for (int l = 0; l < P::width; ++l) {

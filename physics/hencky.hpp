@@ -32,6 +32,8 @@ KOKKOS_INLINE_FUNCTION SymmetricTensor<Dim, T> logarithmic_strain(const Matrix<D
 
 template <class Real>
 struct Hencky {
+  static constexpr bool plastic = false;  ///< see material.hpp
+
   Real lambda;         ///< Lame's first parameter, Pa
   Real shear_modulus;  ///< Pa
 

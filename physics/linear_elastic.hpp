@@ -13,6 +13,8 @@ namespace vsb {
 
 template <class Real>
 struct LinearElastic {
+  static constexpr bool plastic = false;  ///< see material.hpp
+
   Real lambda;         ///< Lame's first parameter, Pa
   Real shear_modulus;  ///< Pa
 
@@ -55,6 +57,15 @@ struct LinearElastic {
     const T isotropic = T(lambda) * dt * trace(L);
     for (int i = 0; i < 3; ++i) s[i] += isotropic;
     return s;
+  }
+
+  /// C^-1 : sigma.
+  template <int Dim, class T>
+  KOKKOS_FUNCTION SymmetricTensor<Dim, T> strain_of(const SymmetricTensor<Dim, T>& sigma) const {
+    const T mu = T(shear_modulus), l = T(lambda);
+    const T isotropic = l / (T(3) * l + T(2) * mu) * (sigma[0] + sigma[1] + sigma[2]);
+    auto e = sigma - SymmetricTensor<Dim, T>::isotropic(isotropic);
+    return e *= T(1) / (T(2) * mu);
   }
 };
 
