@@ -80,6 +80,7 @@ std::vector<std::pair<std::string, double>> stage_figures(const StagesReport& re
   const auto at_rest = std::count_if(report.stages.begin(), report.stages.end(),
                                      [](const StageReport& s) { return s.at_rest; });
   std::vector<std::pair<std::string, double>> figures = {
+      {"particles_at_start", report.stages.empty() ? 0.0 : report.stages.front().particles},
       {"stages", static_cast<double>(report.stages.size())},
       {"stages_at_rest", static_cast<double>(at_rest)},
       {"collapsed", report.outcome == "collapse" ? 1.0 : 0.0}};
