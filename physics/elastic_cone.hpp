@@ -26,7 +26,7 @@ KOKKOS_FORCEINLINE_FUNCTION T second_invariant(const SymmetricTensor<Dim, T>& st
 /// (sxx + syy + szz) / 3.
 template <int Dim, class T>
 KOKKOS_FORCEINLINE_FUNCTION T mean_stress(const SymmetricTensor<Dim, T>& stress) {
-  return T(1. / 3) * (stress[0] + stress[1] + stress[2]);
+  return (T(1) / T(3)) * (stress[0] + stress[1] + stress[2]);
 }
 
 /// Whether sqrt(J2) + slope sigma_m > strength; on packs for every lane.
@@ -40,7 +40,7 @@ KOKKOS_FORCEINLINE_FUNCTION auto outside_cone(T J2, T mean, T slope, T strength)
 template <class T>
 KOKKOS_FORCEINLINE_FUNCTION auto may_exceed_tension(T J2, T mean, T tensile_strength) {
   const T room = tensile_strength - mean;
-  return (T(T(4. / 3) * J2) > T(room * room)) | (room < T(0));
+  return (T(T(4) / T(3) * J2) > T(room * room)) | (room < T(0));
 }
 
 }  // namespace vsb

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <numeric>
 
+#include <vsb/physics/plastic_strain.hpp>
 #include "files/build_info.hpp"
 #include "files/hdf5_file.hpp"
 
@@ -53,6 +54,12 @@ void write_mesh(Hdf5Writer& file, const Mesh& mesh, double time) {
   for (size_t i = 0; i <= cells; ++i) offsets[i] = static_cast<std::int64_t>(i * mesh.points_per_cell);
   file.dataset("VTKHDF/Offsets", offsets, {cells + 1});
   file.dataset("VTKHDF/Types", std::vector<unsigned char>(cells, mesh.cell_type), {cells});
+}
+
+double equivalent_plastic_strain(const Snapshot& s, size_t particle) {
+  SymmetricTensor<3, double> strain;
+  for (size_t c = 0; c < 6; ++c) strain[static_cast<int>(c)] = s.plastic_strain[6 * particle + c];
+  return equivalent_plastic_deviatoric_strain(strain);
 }
 
 std::string frame_name(const std::string& stem, long long step) {
@@ -141,6 +148,12 @@ void Results::write_frame(const Snapshot& s, const ExactFields& exact) {
   if (wanted("cauchy_stress")) field("cauchy_stress", s.cauchy_stress, 6);
   if (!s.recovered_stress.empty() && wanted("recovered_stress"))
     field("recovered_stress", s.recovered_stress, 6);
+  if (!s.plastic_strain.empty() && wanted("plastic_strain")) field("plastic_strain", s.plastic_strain, 6);
+  if (!s.plastic_strain.empty() && wanted("equivalent_plastic_strain")) {
+    std::vector<double> measure(n);
+    for (size_t i = 0; i < n; ++i) measure[i] = equivalent_plastic_strain(s, i);
+    field("equivalent_plastic_strain", measure, 1);
+  }
   if (wanted("volume")) field("volume", s.volume, 1);
   if (wanted("mass")) field("mass", s.mass, 1);
   if (wanted("in_boundary")) field("in_boundary", s.in_boundary, 1);

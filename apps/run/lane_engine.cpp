@@ -18,9 +18,7 @@ std::string obstacle(const Scene& scene) {
     if (traction.self_balanced) return fmt::format("traction '{}' is self-balanced", traction.name);
   }
   for (const auto& body : scene.bodies) {
-    const auto &a = scene.bodies.front().material, &b = body.material;
-    if (a.law != b.law || a.youngs_modulus != b.youngs_modulus || a.poisson_ratio != b.poisson_ratio)
-      return "its bodies differ in their material";
+    if (!(body.material == scene.bodies.front().material)) return "its bodies differ in their material";
   }
   return {};
 }

@@ -24,6 +24,12 @@ void refuse_moving_scenes(const Scene& scene) {
   if (scene.single_precision) refuse("needs precision = \"double\"");
   refuse_unsettled_loads(scene, "--static");
   for (const auto& body : scene.bodies)
+    if (is_plastic(body.material.law))
+      refuse(fmt::format(
+          "body '{}' may yield (its material.law), and a static solution is that of elastic bodies; run "
+          "without --static, with time.until_static",
+          body.name));
+  for (const auto& body : scene.bodies)
     if (body.velocity.value != Point{} || body.velocity.gradient != std::array<Point, 3>{})
       refuse(
           fmt::format("body '{}' has an initial velocity, of which a static state knows nothing", body.name));

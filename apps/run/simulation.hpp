@@ -46,6 +46,8 @@ struct Snapshot {
   std::vector<double>
       recovered_stress;                ///< as cauchy_stress; empty unless run/recovered_stress.hpp filled it
 
+  std::vector<double> plastic_strain;  ///< as cauchy_stress; empty unless a body is plastic
+
   size_t count() const { return id.size(); }
 };
 

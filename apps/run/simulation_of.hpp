@@ -217,6 +217,7 @@ class SimulationOf final : public Simulation {
       s.volume[i] = p.volume(i);
       s.mass[i] = p.mass(i);
     }
+    s.plastic_strain = plastic_strain(p);
     return s;
   }
 
@@ -559,6 +560,20 @@ class SimulationOf final : public Simulation {
       columns = std::max(columns, needed);
     }
     if (rows > 0) allocate_material_state(block_, rows, columns);
+  }
+
+  /// [6 per particle], zero where a body does not yield; empty where none does.
+  std::vector<double> plastic_strain(const Particles<Dim, Real, Kokkos::HostSpace>& p) const {
+    std::vector<double> strain;
+    for (const auto& body : bodies_) {
+      if (!is_plastic(body.material)) continue;
+      strain.resize(6 * static_cast<size_t>(p.count()));
+      for (int n = body.first; n < body.last; ++n)
+        for (size_t c = 0; c < SymmetricTensor<Dim, Real>::size; ++c)
+          strain[6 * static_cast<size_t>(n) + c] =
+              p.material_state(static_cast<size_t>(n + body.state_offset), c);
+    }
+    return strain;
   }
 
   void fix_faces() {

@@ -6,12 +6,14 @@
 #include <filesystem>
 
 #include <vsb/physics/exact_column.hpp>
+#include <vsb/physics/exact_mohr_coulomb_cylinder.hpp>
 #include <vsb/physics/explicit_dynamics.hpp>
 #include <vsb/physics/linear_elastic.hpp>
 #include "scene/read_affine.hpp"
 #include "scene/read_basis.hpp"
 #include "scene/read_grid.hpp"
 #include "scene/read_lattice.hpp"
+#include "scene/read_material.hpp"
 #include "scene/read_moment_fit.hpp"
 #include "scene/read_region.hpp"
 #include "scene/read_removal.hpp"
@@ -23,17 +25,6 @@
 namespace vsb::app {
 
 namespace {
-
-ElasticSpec read_material(TableReader r) {
-  r.allow_only({"law", "youngs_modulus", "poisson_ratio"});
-  ElasticSpec m{};
-  if (r.choice("law", {"linear_elastic", "hencky"}, "linear_elastic") == "hencky")
-    m.law = MaterialLaw::hencky;
-  m.youngs_modulus = r.number("youngs_modulus", Range::positive(), {}, "Pa");
-  m.poisson_ratio = r.number("poisson_ratio", Range::inside(-1, 0.5));
-  r.finish();
-  return m;
-}
 
 template <class Value>
 bool is_zero(const Affine<Value>& field) {
@@ -274,16 +265,19 @@ constexpr const char* recovery_is_linear =
     "what "
     "a smoother basis gains";
 
-OutputSpec read_output(TableReader r, BasisKind basis) {
-  static const std::vector<std::string> fields = {"id",     "displacement", "velocity",   "cauchy_stress",
-                                                  "volume", "mass",         "in_boundary"};
+OutputSpec read_output(TableReader r, const Scene& scene) {
+  std::vector<std::string> fields = {"id",     "displacement", "velocity",   "cauchy_stress",
+                                     "volume", "mass",         "in_boundary"};
+  const bool plastic = std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                   [](const BodySpec& b) { return is_plastic(b.material.law); });
+  if (plastic) fields.insert(fields.end(), {"plastic_strain", "equivalent_plastic_strain"});
   auto allowed = fields;
   allowed.emplace_back("recovered_stress");
   OutputSpec o;
   o.every =
       r.integer("every", 0, 1'000'000'000'000LL, 0, "steps between frames; 0: first and last state only");
   o.fields = r.texts("fields", allowed, fields);
-  if (basis != BasisKind::linear &&
+  if (scene.method.basis != BasisKind::linear &&
       std::find(o.fields.begin(), o.fields.end(), allowed.back()) != o.fields.end())
     r.fail(*r.source().get("fields"), "fields", fmt::format("'{}' {}", allowed.back(), recovery_is_linear));
   o.grid = r.boolean("grid", false);
@@ -296,7 +290,7 @@ OutputSpec read_output(TableReader r, BasisKind basis) {
 /// The largest traction over modulus for which (A1) is of use: it is off by a sixth of its cube.
 constexpr double largest_printed_load = 0.01;
 
-ColumnComparison read_column(TableReader& r, const ElasticSpec& material) {
+ColumnComparison read_column(TableReader& r, const MaterialSpec& material) {
   ColumnComparison c{};
   c.length = r.number("length", Range::positive(), {}, "m, L0 of Eq. (30)");
   const double modulus = LinearElastic<double>::from_young(material.youngs_modulus, material.poisson_ratio)
@@ -311,7 +305,23 @@ ColumnComparison read_column(TableReader& r, const ElasticSpec& material) {
   return c;
 }
 
-Comparison read_comparison(TableReader& document, const ElasticSpec& material, BasisKind basis,
+YieldingCylinderComparison read_yielding_cylinder(TableReader& r, const MaterialSpec& material) {
+  if (material.law != MaterialLaw::mohr_coulomb && material.law != MaterialLaw::tresca)
+    r.fail(*r.source().get("solution"), "solution",
+           "is for a body with law = \"mohr_coulomb\" or \"tresca\"");
+  YieldingCylinderComparison c{};
+  c.inner_radius = r.number("inner_radius", Range::positive(), {}, "m");
+  c.outer_radius = r.number("outer_radius", {c.inner_radius, Range::any().max, true, false}, {}, "m");
+  const double collapse =
+      ExactMohrCoulombCylinder<double>{c.inner_radius,    c.outer_radius,          0,
+                                       material.cohesion, material.friction_angle, material.poisson_ratio}
+          .collapse_pressure();
+  c.pressure = r.number("pressure", {0, collapse, true, true}, {},
+                        "Pa, positive in compression, less than the collapse load");
+  return c;
+}
+
+Comparison read_comparison(TableReader& document, const MaterialSpec& material, BasisKind basis,
                            MoreNorms& more) {
   if (!document.has("compare")) return {};
   TableReader r = document.table("compare");
@@ -319,7 +329,7 @@ Comparison read_comparison(TableReader& document, const ElasticSpec& material, B
                                    "center",   "moved",  "recovered", "cell_means"};
   keys.insert(keys.end(), ellipse_keys.begin(), ellipse_keys.end());
   r.allow_only(keys);
-  const std::string solution = r.choice("solution", {"column", "cylinder", "ellipse"});
+  const std::string solution = r.choice("solution", {"column", "cylinder", "yielding_cylinder", "ellipse"});
   Comparison comparison;
   if (solution == "column") {
     comparison = read_column(r, material);
@@ -335,6 +345,8 @@ Comparison read_comparison(TableReader& document, const ElasticSpec& material, B
       std::copy(place.begin(), place.end(), point->begin());
     }
     comparison = c;
+  } else if (solution == "yielding_cylinder") {
+    comparison = read_yielding_cylinder(r, material);
   } else {
     comparison = read_ellipse(r);
   }
@@ -357,6 +369,8 @@ std::vector<std::string> error_names(const Scene& scene) {
   } else if (std::holds_alternative<CylinderComparison>(scene.compare)) {
     names = {"e_rr", "e_tt", "e_u"};
     stresses = {"e_rr", "e_tt"};
+  } else if (std::holds_alternative<YieldingCylinderComparison>(scene.compare)) {
+    names = stresses = {"e_rr", "e_tt"};
   } else if (std::holds_alternative<EllipseComparison>(scene.compare)) {
     names = stresses = {"e_xx", "e_yy", "e_xy"};
   }
@@ -453,7 +467,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
         "state to run to");
   scene.static_solution = read_static(r.table("static"));
   scene.removal = read_removal(r, scene);
-  scene.output = read_output(r.table("output"), scene.method.basis);
+  scene.output = read_output(r.table("output"), scene);
   scene.compare = read_comparison(r, scene.bodies.front().material, scene.method.basis, scene.more_norms);
   for (auto& table : r.tables("published")) scene.published.push_back(read_published(table, scene));
   r.finish();

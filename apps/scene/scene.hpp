@@ -12,6 +12,7 @@
 
 #include "scene/grid_spec.hpp"
 #include "scene/lattice.hpp"
+#include "scene/material_spec.hpp"
 #include "scene/region.hpp"
 #include "scene/removal_spec.hpp"
 #include "scene/stress_field.hpp"
@@ -24,17 +25,6 @@ struct FaceSpec {
   std::array<std::array<unsigned char, 2>, 3> fixed{};  ///< [logical axis][0: lower face, 1: upper]
 };
 
-/// How stress follows from deformation.
-enum class MaterialLaw {
-  linear_elastic,  ///< rate form, physics/linear_elastic.hpp
-  hencky           ///< from the deformation gradient, physics/hencky.hpp
-};
-
-struct ElasticSpec {
-  MaterialLaw law;
-  double youngs_modulus, poisson_ratio;
-};
-
 struct BodySpec {
   std::string name;
   Region region;
@@ -42,7 +32,7 @@ struct BodySpec {
   Jitter jitter;
   BoundaryBoxes boundary = BoundaryBoxes::keep;
   double density = 0;  ///< kg/m^3
-  ElasticSpec material{};
+  MaterialSpec material{};
   Affine<Stress6> stress;
   Affine<Point> velocity;  ///< m/s
 };
@@ -128,8 +118,13 @@ struct CylinderComparison {
   Point center{};  ///< m, of the undeformed cylinder
   Point moved{};   ///< m, by which it has been carried when it is compared
 };
+/// Of a body with law = "mohr_coulomb" or "tresca", about the origin.
+struct YieldingCylinderComparison {
+  double inner_radius, outer_radius, pressure;
+};
 using EllipseComparison = EllipseSpec;
-using Comparison = std::variant<std::monostate, ColumnComparison, CylinderComparison, EllipseComparison>;
+using Comparison = std::variant<std::monostate, ColumnComparison, CylinderComparison,
+                                YieldingCylinderComparison, EllipseComparison>;
 
 /// Error norms of the stress beside those of the particles' own.
 struct MoreNorms {

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/yielding_cylinder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vsb::app {
+
+namespace {
+
+bool has_yielded(const Snapshot& s, size_t p) {
+  return std::any_of(&s.plastic_strain[6 * p], &s.plastic_strain[6 * p] + 6, [](double e) { return e != 0; });
+}
+
+}  // namespace
+
+ExactMohrCoulombCylinder<double> solution_of(const YieldingCylinderComparison& c, const Scene& scene) {
+  const auto& m = scene.bodies.front().material;
+  return {c.inner_radius, c.outer_radius, c.pressure, m.cohesion, m.friction_angle, m.poisson_ratio};
+}
+
+double plastic_radius(const YieldingCylinderComparison& c, const Snapshot& s) {
+  double yielded = 0, all = 0;
+  for (size_t p = 0; p < s.count(); ++p) {
+    all += s.volume[p];
+    if (has_yielded(s, p)) yielded += s.volume[p];
+  }
+  const double a2 = c.inner_radius * c.inner_radius, b2 = c.outer_radius * c.outer_radius;
+  return std::sqrt(a2 + yielded / all * (b2 - a2));
+}
+
+double plastic_reach(const YieldingCylinderComparison& c, const Snapshot& s) {
+  double reach = c.inner_radius;
+  for (size_t p = 0; p < s.count(); ++p)
+    if (has_yielded(s, p)) reach = std::max(reach, std::hypot(s.position[3 * p], s.position[3 * p + 1]));
+  return reach;
+}
+
+}  // namespace vsb::app
