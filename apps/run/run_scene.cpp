@@ -164,11 +164,18 @@ RunResult run(const Scene& scene, const RunOptions& options) {
         return {exit_interrupted, figures};
       }
       bool failed = false;
-      if (criterion && step % criterion->check_every == 0 && simulation->load_time() >= settled) {
-        const auto balance = simulation->balance();
-        found_static = is_static(*criterion, balance);
-        forecast.observe(step, balance.force_ratio);
-        failed = stages && stages->has_failed();
+      if (criterion && step % criterion->check_every == 0) {
+        const bool constant_loads = simulation->load_time() >= settled;
+        if (constant_loads) {
+          const auto balance = simulation->balance();
+          found_static = is_static(*criterion, balance);
+          forecast.observe(step, balance.force_ratio);
+        }
+        if (stages) {
+          const auto signs = stages->look(constant_loads);
+          found_static = found_static || signs == Stages::Signs::settled;
+          failed = signs == Stages::Signs::failed;
+        }
       }
       if (scene.output.every > 0 && step % scene.output.every == 0) write_frames(results, scene, *simulation);
       if (scene.output.checkpoint_minutes > 0 &&

@@ -44,7 +44,7 @@ struct Snapshot {
   std::vector<unsigned char> in_boundary;  ///< 1 where a particle contributes to a node with a traction
   std::vector<PlacedBody> bodies;          ///< which particles are whose
   std::vector<double>
-      recovered_stress;                ///< as cauchy_stress; empty unless run/recovered_stress.hpp filled it
+      recovered_stress;  ///< as cauchy_stress; empty unless run/recovered_stress.hpp filled it
 
   std::vector<double> plastic_strain;  ///< as cauchy_stress; empty unless a body is plastic
 
@@ -100,6 +100,8 @@ struct SavedState {
   StagedState staged;
 };
 
+enum class CellContent : unsigned char { nothing, particles, marked };
+
 class Simulation {
  public:
   virtual ~Simulation() = default;
@@ -139,6 +141,9 @@ class Simulation {
   virtual std::vector<double> equivalent_plastic_strain(bool smoothed) = 0;
   /// Volume of the particles with a plastic strain, m^3 (m^2 in 2D).
   virtual double yielded_volume() = 0;
+  /// What is in the cells of the scene's grid, along x first: nothing, particles, or in the main those with a
+  /// 1 in `marked`.
+  virtual std::vector<CellContent> cell_contents(const std::vector<unsigned char>& marked) = 0;
   /// Removes the particles with a 1; those that stay keep order and ids. Steps are counted on.
   virtual void remove(const std::vector<unsigned char>& removed, const Restart& restart) = 0;
   virtual SavedState save() const = 0;

@@ -246,6 +246,25 @@ class SimulationOf final : public Simulation {
     return sum;
   }
 
+  std::vector<CellContent> cell_contents(const std::vector<unsigned char>& marked) override {
+    unpack();
+    const auto host = host_copy(block_);
+    size_t cells = 1;
+    for (size_t i = 0; i < Dim; ++i) cells *= static_cast<size_t>(scene_.grid.cells[i]);
+    std::vector<int> surplus(cells, 0);  // of marked particles
+    std::vector<CellContent> contents(cells, CellContent::nothing);
+    for (int p = 0; p < particle_count(); ++p) {
+      const auto cell = basis_.grid.cell_containing(host.particles.position_of(p));
+      int index = 0;
+      for (int i = Dim - 1; i >= 0; --i)
+        index = index * scene_.grid.cells[static_cast<size_t>(i)] + (cell[i] - Basis::reach);
+      const auto c = static_cast<size_t>(index);
+      surplus[c] += marked[static_cast<size_t>(p)] != 0 ? 1 : -1;
+      contents[c] = surplus[c] >= 0 ? CellContent::marked : CellContent::particles;
+    }
+    return contents;
+  }
+
   void remove(const std::vector<unsigned char>& removed, const Restart& restart) override {
     unpack();
     keep(removed);

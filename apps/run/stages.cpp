@@ -4,7 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
+
+#include "run/torn_body.hpp"
 
 namespace vsb::app {
 
@@ -57,9 +58,13 @@ StageReport Stages::present_stage(double seconds) const {
   return stage;
 }
 
-bool Stages::has_failed() {
-  last_failed_ = count(beyond(simulation_.equivalent_plastic_strain(false), removal_.threshold));
-  return last_failed_ >= removal_.collapse * simulation_.particle_count();
+Stages::Signs Stages::look(bool constant_loads) {
+  auto failed = beyond(simulation_.equivalent_plastic_strain(removal_.remap), removal_.threshold);
+  const long long step = simulation_.step();
+  if (failed != last_failed_ || !constant_loads) last_change_ = step;
+  last_failed_ = std::move(failed);
+  if (!collapse_of(last_failed_).empty()) return Signs::failed;
+  return removal_.settled > 0 && step - last_change_ >= removal_.settled ? Signs::settled : Signs::none;
 }
 
 bool Stages::end(bool at_rest, double force_ratio, double seconds) {
@@ -74,10 +79,9 @@ bool Stages::end(bool at_rest, double force_ratio, double seconds) {
   if (removal_.hole) stage.zone = zone_of(failed);
 
   auto& outcome = report_.outcome;
-  if (stage.share() >= removal_.collapse) {
+  if (const auto collapse = collapse_of(failed); !collapse.empty()) {
     outcome = "collapse";
-    report_.reason =
-        fmt::format("{:.3g} % of the particles that were left are beyond the threshold", 100 * stage.share());
+    report_.reason = collapse;
   } else if (!at_rest) {
     outcome = "collapse";
     report_.reason = fmt::format(
@@ -105,19 +109,32 @@ bool Stages::end(bool at_rest, double force_ratio, double seconds) {
   simulation_.remove(failed, restart);
   first_step_ = simulation_.step();
   seconds_before_ = 0;
-  last_failed_ = 0;
+  last_failed_.clear();
   return true;
 }
 
 bool Stages::end_diverged(const std::string& message, double seconds) {
   auto stage = present_stage(seconds);
-  stage.failed = last_failed_;
+  stage.failed = count(last_failed_);
   if (stage.share() < most) return false;
   report_.stages.push_back(stage);
   report_.outcome = "collapse";
   report_.reason = fmt::format("the run diverged, {:.3g} % of the particles beyond the threshold: {}",
                                100 * stage.share(), message);
   return true;
+}
+
+std::string Stages::collapse_of(const std::vector<unsigned char>& failed) const {
+  const double share = static_cast<double>(count(failed)) / static_cast<double>(failed.size());
+  if (share >= removal_.collapse)
+    return fmt::format("{:.3g} % of the particles that were left are beyond the threshold", 100 * share);
+  if (removal_.hole && !scene_.grid.mapped() &&
+      hole_meets_outside(scene_, *removal_.hole, simulation_.cell_contents(failed)))
+    return fmt::format(
+        "the body is torn: failed cells join the hole and the outside ({:.3g} % of the particles that were "
+        "left are beyond the threshold)",
+        100 * share);
+  return {};
 }
 
 FailedZone Stages::zone_of(const std::vector<unsigned char>& failed) const {

@@ -23,8 +23,13 @@ class Stages {
   int number() const { return static_cast<int>(report_.stages.size()) + 1; }
   long long first_step() const { return first_step_; }
 
-  /// Looks at the particles on the way: whether so many are beyond the threshold that the stage may end.
-  bool has_failed();
+  /// What the particles tell on the way.
+  enum class Signs {
+    none,
+    settled,  ///< no other particle has failed for a while, under loads that stay the same
+    failed    ///< the body has collapsed
+  };
+  Signs look(bool constant_loads);
   /// Ends the stage, which has taken `seconds`, and removes what failed. Whether another stage begins.
   bool end(bool at_rest, double force_ratio, double seconds);
   /// Ends the last stage of a run that diverged. False where it has not collapsed: fewer than half of the
@@ -35,6 +40,8 @@ class Stages {
 
  private:
   StageReport present_stage(double seconds) const;
+  /// Why the body with these failed particles has collapsed; empty where it has not.
+  std::string collapse_of(const std::vector<unsigned char>& failed) const;
   FailedZone zone_of(const std::vector<unsigned char>& failed) const;
 
   const Scene& scene_;
@@ -42,8 +49,9 @@ class Stages {
   Simulation& simulation_;
   std::vector<unsigned char> present_;  ///< [particle at the start]
   long long first_step_ = 0;
-  double seconds_before_ = 0;  ///< of the present stage, before a resume
-  int last_failed_ = 0;        ///< when the particles were last looked at
+  double seconds_before_ = 0;               ///< of the present stage, before a resume
+  std::vector<unsigned char> last_failed_;  ///< when the particles were last looked at
+  long long last_change_ = 0;               ///< the step at which others had failed than before
   StagesReport report_;
 };
 

@@ -55,7 +55,8 @@ HoleSpec read_hole(TableReader r, const Scene& scene) {
 std::optional<RemovalSpec> read_removal(TableReader& document, const Scene& scene) {
   if (!document.has("removal")) return {};
   TableReader r = document.table("removal");
-  r.allow_only({"measure", "threshold", "remap", "next", "damping", "max_stages", "collapse", "hole"});
+  r.allow_only(
+      {"measure", "threshold", "remap", "next", "damping", "max_stages", "settled", "collapse", "hole"});
   if (const auto reason = obstacle(scene); !reason.empty())
     document.fail(*document.source().get("removal"), "removal", reason);
   RemovalSpec removal;
@@ -69,6 +70,10 @@ std::optional<RemovalSpec> read_removal(TableReader& document, const Scene& scen
     r.fail(*r.source().get("damping"), "damping",
            "is for next = \"continue\"; with \"reset\" all stages have method.damping");
   removal.max_stages = static_cast<int>(r.integer("max_stages", 1, 1000, 10));
+  removal.settled =
+      r.integer("settled", 0, 1'000'000'000'000LL, 0,
+                "steps under constant loads without another particle beyond the threshold after "
+                "which a stage is at its end, too; 0: when it is static alone");
   removal.collapse = r.number("collapse", {0, 1, true, false}, 0.9,
                               "share of the particles beyond the threshold that ends the run");
   if (r.has("hole")) {

@@ -18,12 +18,13 @@ struct HoleSpec {
 };
 
 struct RemovalSpec {
-  double threshold = 0;          ///< of the equivalent plastic strain, Eq. (34)
-  bool remap = true;             ///< whether particles are judged by the strain smoothed over the nodes
-  bool reset = true;             ///< whether a stage begins with the body as it was at the start
-  double damping = 0;            ///< Cundall's alpha, of stages that go on from the one before
-  int max_stages = 0;            ///< equilibrium states
-  double collapse = 0;           ///< share of the particles beyond the threshold that counts as collapse
+  double threshold = 0;   ///< of the equivalent plastic strain, Eq. (34)
+  bool remap = true;      ///< whether particles are judged by the strain smoothed over the nodes
+  bool reset = true;      ///< whether a stage begins with the body as it was at the start
+  double damping = 0;     ///< Cundall's alpha, of stages that go on from the one before
+  int max_stages = 0;     ///< equilibrium states
+  long long settled = 0;  ///< steps without another failure after which a stage counts as at rest; 0: off
+  double collapse = 0;    ///< share of the particles beyond the threshold that counts as collapse
   std::optional<HoleSpec> hole;  ///< none: failed particles are counted, and that is all
 };
 
