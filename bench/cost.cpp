@@ -101,6 +101,7 @@ Record measure_flows(const CostOptions& o) {
   for (const int direction : {0, 1, 2})
     add(in_child(o.threads, [&](Record& r) { Measurements<Real>::flow(direction, 200, r); }));
   add(in_child(o.threads, [&](Record& r) { Measurements<Real>::sparse(r); }));
+  add(in_child(o.threads, [&](Record& r) { Measurements<Real>::materials(r); }));
   double bytes[2];
   for (const bool sparse : {false, true})
     bytes[sparse] = in_child(
@@ -156,7 +157,9 @@ void print(const Row& row) {
 }
 
 void print_flows(const Record& r, const char* real) {
-  std::printf("\nfree flight at 0.1 cells per step and a grid of 30 times the body's volume, %s\n", real);
+  std::printf(
+      "\nfree flight at 0.1 cells per step, a grid of 30 times the body's volume, and plasticity, %s\n",
+      real);
   for (const auto& [name, value] : r.all()) std::printf("  %-30s %8.3f\n", name.c_str(), value);
   std::fflush(stdout);
 }

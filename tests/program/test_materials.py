@@ -1,14 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Hencky elasticity and the void filter as a scene says them: errors, checkpoints, what is refused."""
 import math
-import re
-import signal
-import subprocess
-import time
 import unittest
 
 import numpy as np
-from vsb_program import PROGRAM, SCENES, ProgramTest, last_fields, vsb
+from vsb_program import SCENES, ProgramTest, last_fields, vsb
 
 HENCKY = ("--set", "body[0].material.law=hencky")
 # The cylinder with gaps between its rings, on the coarsest grid that shows them.
@@ -140,23 +136,6 @@ class VoidFilter(ProgramTest):
 
 
 class Resuming(ProgramTest):
-    def resume(self, scene, *arguments, pause=0.7):
-        """Runs, interrupts, resumes: the same bits as of a run in one go."""
-        out = self.folder / "parts"
-        run = subprocess.Popen([PROGRAM, "run", str(SCENES / f"{scene}.toml"), "--out", str(out), *arguments],
-                               stdout=subprocess.PIPE, text=True)
-        run.stdout.readline()  # the head line: the run has begun
-        time.sleep(pause)
-        run.send_signal(signal.SIGINT)
-        output, _ = run.communicate(timeout=60)
-        step = re.search(r"interrupted at step (\d+)", output)
-        self.assertIsNotNone(step, output)
-        self.assertGreater(int(step[1]), 0)
-        parts = self.run_scene(scene, "--resume", *arguments, out="parts")
-        whole = self.run_scene(scene, *arguments, out="whole")
-        self.assertEqual(parts["state_hash"], whole["state_hash"])
-        return int(step[1]), whole
-
     def test_the_deformation_gradient_is_part_of_the_checkpoint(self):
         self.resume("column", *HENCKY, "--set", "time.steps=600000")
 

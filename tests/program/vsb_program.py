@@ -3,8 +3,11 @@
 import json
 import os
 import pathlib
+import re
+import signal
 import subprocess
 import tempfile
+import time
 import unittest
 
 import h5py
@@ -36,6 +39,23 @@ class ProgramTest(unittest.TestCase):
         cut_short = any("until_static.max_steps=" in str(a) for a in arguments) and not summary.get("static")
         self.assertEqual(done.returncode, 7 if cut_short else 0, done.stderr + done.stdout)
         return summary
+
+    def resume(self, scene, *arguments, pause=0.7):
+        """Runs, interrupts, resumes: the same bits as of a run in one go."""
+        out = self.folder / "parts"
+        run = subprocess.Popen([PROGRAM, "run", str(SCENES / f"{scene}.toml"), "--out", str(out), *arguments],
+                               stdout=subprocess.PIPE, text=True)
+        run.stdout.readline()  # the head line: the run has begun
+        time.sleep(pause)
+        run.send_signal(signal.SIGINT)
+        output, _ = run.communicate(timeout=60)
+        step = re.search(r"interrupted at step (\d+)", output)
+        self.assertIsNotNone(step, output)
+        self.assertGreater(int(step[1]), 0)
+        parts = self.run_scene(scene, "--resume", *arguments, out="parts")
+        whole = self.run_scene(scene, *arguments, out="whole")
+        self.assertEqual(parts["state_hash"], whole["state_hash"])
+        return int(step[1]), whole
 
     def write(self, text, name="scene.toml"):
         path = self.folder / name
