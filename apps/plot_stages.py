@@ -57,9 +57,9 @@ class Slice:
 
 def title_of(number, stage, outcome, last):
     if last and outcome == "collapse":
-        return f"{number}: total failure"
+        return f"stage {number}\ntotal failure"
     rows = f", {stage['rows']:.1f} rows" if stage["rows"] > 0 else ""
-    return f"{number}: {stage['failed']} beyond the threshold{rows}"
+    return f"stage {number}\n{stage['failed']} beyond the threshold{rows}"
 
 
 def draw_stages(run, highest):
