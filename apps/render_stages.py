@@ -68,8 +68,8 @@ def cubes(x, strain, spacing, colours):
     mapper.SetScalarRange(*colours.GetRange())
     actor = vtk.vtkActor()
     actor.SetMapper(mapper)
-    actor.GetProperty().SetAmbient(0.35)
-    actor.GetProperty().SetDiffuse(0.7)
+    actor.GetProperty().SetAmbient(0.45)
+    actor.GetProperty().SetDiffuse(0.6)
     return actor
 
 
@@ -87,43 +87,47 @@ def colour_table(highest):
     return table
 
 
+def caption(words, height, size):
+    text = vtk.vtkTextActor()
+    text.SetInput(words)
+    text.GetTextProperty().SetFontSize(size)
+    text.GetTextProperty().SetColor(0, 0, 0)
+    text.GetTextProperty().SetJustificationToCentered()
+    text.GetPositionCoordinate().SetCoordinateSystemToNormalizedViewport()
+    text.SetPosition(0.5, height)
+    return text
+
+
 def panel(window, viewport, title, actor, colours):
     renderer = vtk.vtkRenderer()
     renderer.SetViewport(*viewport)
     renderer.SetBackground(1, 1, 1)
     renderer.AddActor(actor)
-    text = vtk.vtkTextActor()
-    text.SetInput(title)
-    text.GetTextProperty().SetFontSize(22)
-    text.GetTextProperty().SetColor(0, 0, 0)
-    text.GetTextProperty().SetJustificationToCentered()
-    text.GetPositionCoordinate().SetCoordinateSystemToNormalizedViewport()
-    text.SetPosition(0.5, 0.94)
-    renderer.AddActor2D(text)
+    renderer.AddActor2D(caption(title, 0.94, 22))
     if colours:
         bar = vtk.vtkScalarBarActor()
         bar.SetLookupTable(colours)
-        bar.SetTitle("equivalent plastic strain")
         bar.UnconstrainedFontSizeOn()
-        for properties in (bar.GetTitleTextProperty(), bar.GetLabelTextProperty()):
-            properties.SetColor(0, 0, 0)
-            properties.SetFontSize(16)
-            properties.BoldOff()
-            properties.ItalicOff()
-            properties.ShadowOff()
+        labels = bar.GetLabelTextProperty()
+        labels.SetColor(0, 0, 0)
+        labels.SetFontSize(16)
+        labels.BoldOff()
+        labels.ItalicOff()
+        labels.ShadowOff()
         bar.SetOrientationToHorizontal()
         bar.SetLabelFormat("%.4f")
         bar.SetNumberOfLabels(4)
         bar.SetPosition(0.1, 0.02)
         bar.SetWidth(0.8)
-        bar.SetHeight(0.09)
+        bar.SetHeight(0.07)
         renderer.AddActor2D(bar)
+        renderer.AddActor2D(caption("equivalent plastic strain", 0.1, 16))
     camera = renderer.GetActiveCamera()
-    camera.SetFocalPoint(0, 0, 76)
-    camera.SetPosition(330, 330, 330)
+    camera.SetFocalPoint(0, 0, 0)
+    camera.SetPosition(1, 1, 0.9)
     camera.SetViewUp(0, 0, 1)
     renderer.ResetCamera()
-    camera.Zoom(1.25)
+    camera.Zoom(1.12)
     window.AddRenderer(renderer)
 
 
