@@ -68,8 +68,8 @@ def cubes(x, strain, spacing, colours):
     mapper.SetScalarRange(*colours.GetRange())
     actor = vtk.vtkActor()
     actor.SetMapper(mapper)
-    actor.GetProperty().SetAmbient(0.45)
-    actor.GetProperty().SetDiffuse(0.6)
+    actor.GetProperty().SetAmbient(0.4)
+    actor.GetProperty().SetDiffuse(0.65)
     return actor
 
 

@@ -81,7 +81,7 @@ struct StaticSolution {
 
 /// What a run that removes particles in stages (run/stages.hpp) has beside the particles that are left.
 struct StagedState {
-  std::vector<unsigned char> present;  ///< [particle at the start]: 1 where it is left
+  std::vector<unsigned char> present;  ///< [particle at the start]: not 0 where it is left
   long long loads_begin = 0;           ///< the step of the last reset
   std::string stages;                  ///< of run/stages.hpp
 };

@@ -14,12 +14,26 @@ namespace {
 /// Where a run diverged, the share of failed particles from which on this counts as collapse.
 constexpr double most = 0.5;
 
+/// The share of the failed particles that may change while they count as settled: fewer than one in a slice.
+constexpr double few = 1e-3;
+
+/// The flags of StagedState::present.
+constexpr unsigned char left = 1, had_failed = 2;
+
 /// The particles beyond the threshold, NaN among them.
 std::vector<unsigned char> beyond(const std::vector<double>& measure, double threshold) {
   std::vector<unsigned char> failed(measure.size());
   std::transform(measure.begin(), measure.end(), failed.begin(),
                  [&](double q) -> unsigned char { return q <= threshold ? 0 : 1; });
   return failed;
+}
+
+/// How many particles failed in one of two states alone.
+int differences(const std::vector<unsigned char>& a, const std::vector<unsigned char>& b) {
+  if (a.size() != b.size()) return static_cast<int>(a.size());
+  int n = 0;
+  for (size_t p = 0; p < a.size(); ++p) n += a[p] != b[p];
+  return n;
 }
 
 int count(const std::vector<unsigned char>& failed) {
@@ -34,18 +48,30 @@ Stages::Stages(const Scene& scene, Simulation& simulation)
 }
 
 void Stages::restore(const StagedState& saved) {
-  present_ = saved.present;
+  for (size_t id = 0; id < present_.size(); ++id) {
+    present_[id] = saved.present[id] & left;
+    if (present_[id] != 0) settled_.push_back((saved.present[id] & had_failed) != 0);
+  }
   report_ = stages_of_toml(saved.stages);
-  // The last one is the stage that was under way.
+  // The last one is the stage that was under way; see with_stages.
   first_step_ = report_.stages.back().first_step;
+  settled_step_ = report_.stages.back().last_step;
+  last_count_ = report_.stages.back().failed;
   seconds_before_ = report_.stages.back().seconds;
   report_.stages.pop_back();
 }
 
 SavedState Stages::with_stages(SavedState saved, double seconds) const {
   auto report = report_;
-  report.stages.push_back(present_stage(seconds));
+  auto under_way = present_stage(seconds);
+  under_way.last_step = settled_step_;
+  under_way.failed = last_count_;
+  report.stages.push_back(under_way);
   saved.staged.stages = to_toml(report);
+  if (settled_.empty()) return saved;
+  size_t n = 0;
+  for (auto& flag : saved.staged.present)
+    if (flag != 0 && settled_[n++] != 0) flag = left | had_failed;
   return saved;
 }
 
@@ -59,12 +85,15 @@ StageReport Stages::present_stage(double seconds) const {
 }
 
 Stages::Signs Stages::look(bool constant_loads) {
-  auto failed = beyond(simulation_.equivalent_plastic_strain(removal_.remap), removal_.threshold);
-  const long long step = simulation_.step();
-  if (failed != last_failed_ || !constant_loads) last_change_ = step;
-  last_failed_ = std::move(failed);
-  if (!collapse_of(last_failed_).empty()) return Signs::failed;
-  return removal_.settled > 0 && step - last_change_ >= removal_.settled ? Signs::settled : Signs::none;
+  const auto failed = beyond(simulation_.equivalent_plastic_strain(removal_.remap), removal_.threshold);
+  last_count_ = count(failed);
+  if (!constant_loads || differences(failed, settled_) > few * last_count_) {
+    settled_ = failed;
+    settled_step_ = simulation_.step();
+  }
+  if (!collapse_of(failed).empty()) return Signs::failed;
+  const bool settled = removal_.settled > 0 && simulation_.step() - settled_step_ >= removal_.settled;
+  return settled ? Signs::settled : Signs::none;
 }
 
 bool Stages::end(bool at_rest, double force_ratio, double seconds) {
@@ -109,13 +138,15 @@ bool Stages::end(bool at_rest, double force_ratio, double seconds) {
   simulation_.remove(failed, restart);
   first_step_ = simulation_.step();
   seconds_before_ = 0;
-  last_failed_.clear();
+  last_count_ = 0;
+  settled_.clear();
+  settled_step_ = first_step_;
   return true;
 }
 
 bool Stages::end_diverged(const std::string& message, double seconds) {
   auto stage = present_stage(seconds);
-  stage.failed = count(last_failed_);
+  stage.failed = last_count_;
   if (stage.share() < most) return false;
   report_.stages.push_back(stage);
   report_.outcome = "collapse";

@@ -26,7 +26,7 @@ class Stages {
   /// What the particles tell on the way.
   enum class Signs {
     none,
-    settled,  ///< no other particle has failed for a while, under loads that stay the same
+    settled,  ///< hardly another particle has failed for a while, under loads that stay the same
     failed    ///< the body has collapsed
   };
   Signs look(bool constant_loads);
@@ -49,9 +49,10 @@ class Stages {
   Simulation& simulation_;
   std::vector<unsigned char> present_;  ///< [particle at the start]
   long long first_step_ = 0;
-  double seconds_before_ = 0;               ///< of the present stage, before a resume
-  std::vector<unsigned char> last_failed_;  ///< when the particles were last looked at
-  long long last_change_ = 0;               ///< the step at which others had failed than before
+  double seconds_before_ = 0;           ///< of the present stage, before a resume
+  int last_count_ = 0;                  ///< failed particles when they were last looked at
+  std::vector<unsigned char> settled_;  ///< the failed ones of step settled_step_, and still but for a few
+  long long settled_step_ = 0;
   StagesReport report_;
 };
 
