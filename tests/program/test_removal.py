@@ -168,6 +168,27 @@ class Ways(ProgramTest):
     def test_so_has_one_that_goes_on_from_the_state_before(self):
         self.resume_in_stage_2("--set", "removal.next=continue", "--set", "method.engine=particles")
 
+    def test_one_that_is_interrupted_again_and_again_has_them_too(self):
+        """Also while it counts the steps without another failure."""
+        arguments = ["--set", "removal.max_stages=1", "--set", "time.until_static.force_ratio=1e-12", "--set",
+                     "method.engine=particles"]
+        command = [PROGRAM, "run", str(SLICE), "--out", str(self.folder / "parts"), *arguments]
+        interrupts = 0
+        while True:
+            run = subprocess.Popen([*command, *(["--resume"] if interrupts else [])], stdout=subprocess.PIPE, text=True)
+            run.stdout.readline()  # the head line: the run has begun
+            time.sleep(0.2)
+            run.send_signal(signal.SIGINT)
+            output, _ = run.communicate(timeout=60)
+            if run.returncode == 0:
+                break
+            self.assertEqual(run.returncode, 5, output)
+            interrupts += 1
+        self.assertGreater(interrupts, 0)
+        parts = json.loads((self.folder / "parts" / "summary.json").read_text())
+        whole = self.run_scene(SLICE, *arguments, out="whole")
+        self.assertEqual((parts["steps"], parts["state_hash"]), (whole["steps"], whole["state_hash"]))
+
     def test_going_on_keeps_stress_and_load(self):
         once = self.run_slice("--set", "removal.max_stages=2", "--set", "removal.next=continue")["stage"]
         anew = self.run_slice("--set", "removal.max_stages=2")["stage"]
