@@ -19,6 +19,9 @@
 #ifdef _OPENMP
 #include <omp.h>
 #endif
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 namespace {
 
@@ -64,6 +67,14 @@ int threads_for(const Scene& scene, int asked) {
   return asked > 0 || std::getenv("OMP_NUM_THREADS") ? asked : useful_threads(count_particles(scene));
 }
 
+/// Large arrays go back to the system when they are freed. Left alone, glibc keeps those of up to 32 MB for
+/// itself: what a frame needs for a moment, as much again as the particles, would stay for the whole run.
+void give_back_large_arrays() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 1 << 20);
+#endif
+}
+
 void print_info() {
   fmt::print("vsb\n");
   for (const auto& [name, value] : build_info()) fmt::print("  {:<16} {}\n", name, value);
@@ -75,6 +86,7 @@ void print_info() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  give_back_large_arrays();
   std::setvbuf(stdout, nullptr, _IOLBF, 0);  // lines reach a log file or a pipe as they are printed
   CLI::App app{
       "vsb: material point method with tractions by the virtual stress boundary method.\n\n"

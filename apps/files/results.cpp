@@ -211,6 +211,14 @@ void Results::write_checkpoint(const SavedState& saved) {
   file.attribute("checkpoint", "bytes_per_number",
                  std::vector<std::int64_t>{static_cast<std::int64_t>(saved.bytes_per_number)});
   file.dataset("checkpoint/particles", saved.particles, {saved.particles.size()});
+  if (scene_.removal) {
+    const auto& staged = saved.staged;
+    file.group("staged");
+    file.attribute("staged", "loads_begin", std::vector<std::int64_t>{staged.loads_begin});
+    file.dataset("staged/present", staged.present, {staged.present.size()});
+    const std::vector<unsigned char> stages(staged.stages.begin(), staged.stages.end());
+    file.dataset("staged/stages", stages, {stages.size()});
+  }
   write_provenance(file, scene_);
   file.commit();
 }
@@ -232,8 +240,17 @@ std::optional<SavedState> Results::read_checkpoint() const {
   if (file.text("provenance", "scene") != scene_.resolved)
     throw FileError(fmt::format(
         "{}: written for another scene (or other --set values); remove it, or run without --resume", name));
-  return SavedState{number("step"), static_cast<size_t>(number("bytes_per_number")),
-                    file.bytes("checkpoint/particles")};
+  SavedState saved{number("step"),
+                   static_cast<size_t>(number("bytes_per_number")),
+                   file.bytes("checkpoint/particles"),
+                   {}};
+  if (scene_.removal) {
+    const auto stages = file.bytes("staged/stages");
+    saved.staged.present = file.bytes("staged/present");
+    saved.staged.stages.assign(stages.begin(), stages.end());
+    saved.staged.loads_begin = file.integers("staged", "loads_begin").at(0);
+  }
+  return saved;
 }
 
 std::optional<long long> Results::checkpoint_step() const {

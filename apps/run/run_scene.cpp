@@ -15,6 +15,7 @@
 #include "run/run_parts.hpp"
 #include "run/run_static.hpp"
 #include "run/scene_advice.hpp"
+#include "run/stages.hpp"
 
 namespace vsb::app {
 
@@ -28,10 +29,10 @@ double seconds_since(Clock::time_point begin) {
 
 constexpr long long health_interval = 100;  // steps between checks for a diverging run
 
-/// The first step after `step` at which something is due: a check, a frame, or the end.
-long long next_stop(const Scene& scene, long long step) {
+/// The first step after `step` at which something is due: a check, a frame, or the last step.
+long long next_stop(const Scene& scene, long long step, long long last) {
   const auto multiple = [&](long long interval) { return (step / interval + 1) * interval; };
-  long long stop = std::min(scene.time.steps, multiple(health_interval));
+  long long stop = std::min(last, multiple(health_interval));
   if (scene.output.every > 0) stop = std::min(stop, multiple(scene.output.every));
   if (scene.time.until_static) stop = std::min(stop, multiple(scene.time.until_static->check_every));
   return stop;
@@ -69,13 +70,24 @@ class StaticForecast {
   double first_ratio_ = 0, last_ratio_ = 0;
 };
 
+/// Prints the last stage, and after the last of all how they ended.
+void print_stage(const Scene& scene, const Stages& stages) {
+  const auto& [reports, outcome, reason] = stages.report();
+  fmt::print("{}\n",
+             stage_text(reports.back(), static_cast<int>(reports.size()), scene.removal->hole.has_value()));
+  if (!outcome.empty()) fmt::print("{}: {}\n", outcome, reason);
+}
+
 RunResult run(const Scene& scene, const RunOptions& options) {
   const auto simulation = make_simulation(scene);
+  std::optional<Stages> stages;
+  if (scene.removal) stages.emplace(scene, *simulation);
   Results results(options.directory, scene);
   long long resumed_step = -1;
   if (options.resume) {
     if (const auto saved = results.read_checkpoint()) {
       simulation->restore(*saved);
+      if (stages) stages->restore(saved->staged);
       resumed_step = saved->step;
     } else if (!options.progress_only) {
       fmt::print(stderr, "vsb: no checkpoint in {}; starting from step 0\n", options.directory);
@@ -97,70 +109,118 @@ RunResult run(const Scene& scene, const RunOptions& options) {
   if (resumed_step < 0) write_frames(results, scene, *simulation);
 
   Progress progress(options.quiet, simulation->particle_count());
-  StaticForecast forecast(scene.time.until_static.value_or(StaticCriterion{}));
+  const auto& criterion = scene.time.until_static;
+  StaticForecast forecast(criterion.value_or(StaticCriterion{}));
   const long long first_step = simulation->step();
   const double settled = loads_settled_at(scene);
   RunFigures figures;
   auto last_checkpoint = Clock::now();
-  bool found_static = false;
-  while (simulation->step() < scene.time.steps && !found_static) {
-    const auto begin = Clock::now();
-    const long long stop = next_stop(scene, simulation->step());
-    while (simulation->step() < stop && !interrupt_requested())
-      simulation->advance(std::min<long long>(stop - simulation->step(),
-                                              std::max(1, 100'000 / simulation->particle_count())));
-    figures.seconds += seconds_since(begin);
-    const long long step = simulation->step();
-    if (step % health_interval == 0 || interrupt_requested()) simulation->check_health();
-    if (interrupt_requested()) {
-      progress.finish();
-      results.write_checkpoint(simulation->save());
-      if (!options.progress_only) {
-        fmt::print("interrupted at step {}; the same command with --resume (and the same --set) goes on\n",
-                   step);
+  bool found_static = false, diverged = false, done = false;
+  double seconds_before_stage = 0;
+  const auto last_step = [&] { return (stages ? stages->first_step() : 0) + scene.time.steps; };
+  const auto stage_seconds = [&] { return figures.seconds - seconds_before_stage; };
+  const auto write_checkpoint = [&] {
+    auto saved = simulation->save();
+    results.write_checkpoint(stages ? stages->with_stages(std::move(saved), stage_seconds()) : saved);
+  };
+  // Ends a stage of a run that removes particles, and sets out on the next one.
+  const auto end_stage = [&] {
+    simulation->check_health();
+    write_frames(results, scene, *simulation);
+    const double force_ratio = simulation->balance().force_ratio;
+    const bool another = stages->end(found_static, force_ratio, stage_seconds());
+    progress.finish();
+    if (reports) print_stage(scene, *stages);
+    if (!another) return true;
+    seconds_before_stage = figures.seconds;
+    found_static = false;
+    forecast = StaticForecast(*criterion);
+    write_checkpoint();
+    last_checkpoint = Clock::now();
+    return false;
+  };
+  try {
+    while (!done) {
+      const auto begin = Clock::now();
+      const long long stop = next_stop(scene, simulation->step(), last_step());
+      while (simulation->step() < stop && !interrupt_requested()) {
+        const auto steps = std::min<long long>(stop - simulation->step(),
+                                               std::max(1, 100'000 / simulation->particle_count()));
+        simulation->advance(steps);
+        figures.particle_steps += static_cast<double>(steps) * simulation->particle_count();
       }
-      figures.steps = step;
-      figures.steps_timed = step - first_step;
-      return {exit_interrupted, figures};
+      figures.seconds += seconds_since(begin);
+      const long long step = simulation->step();
+      if (step % health_interval == 0 || interrupt_requested()) simulation->check_health();
+      if (interrupt_requested()) {
+        progress.finish();
+        write_checkpoint();
+        if (!options.progress_only) {
+          fmt::print("interrupted at step {}; the same command with --resume (and the same --set) goes on\n",
+                     step);
+        }
+        figures.steps = step;
+        figures.steps_timed = step - first_step;
+        return {exit_interrupted, figures};
+      }
+      bool failed = false;
+      if (criterion && step % criterion->check_every == 0) {
+        const bool constant_loads = simulation->load_time() >= settled;
+        if (constant_loads) {
+          const auto balance = simulation->balance();
+          found_static = is_static(*criterion, balance);
+          forecast.observe(step, balance.force_ratio);
+        }
+        if (stages) {
+          const auto signs = stages->look(constant_loads);
+          found_static = found_static || signs == Stages::Signs::settled;
+          failed = signs == Stages::Signs::failed;
+        }
+      }
+      if (scene.output.every > 0 && step % scene.output.every == 0) write_frames(results, scene, *simulation);
+      if (scene.output.checkpoint_minutes > 0 &&
+          seconds_since(last_checkpoint) > 60 * scene.output.checkpoint_minutes) {
+        simulation->check_health();
+        write_checkpoint();
+        last_checkpoint = Clock::now();
+      }
+      if (progress.due())
+        progress.report(step, step - first_step, figures.seconds,
+                        criterion ? forecast.end() : scene.time.steps, simulation->balance().force_ratio,
+                        criterion.has_value());
+      done = found_static || failed || step >= last_step();
+      if (done && stages) done = end_stage();
     }
-    const auto& criterion = scene.time.until_static;
-    if (criterion && step % criterion->check_every == 0 &&
-        static_cast<double>(step) * scene.time.dt >= settled) {
-      const auto balance = simulation->balance();
-      found_static = is_static(*criterion, balance);
-      forecast.observe(step, balance.force_ratio);
-    }
-    if (scene.output.every > 0 && step % scene.output.every == 0) write_frames(results, scene, *simulation);
-    if (scene.output.checkpoint_minutes > 0 &&
-        seconds_since(last_checkpoint) > 60 * scene.output.checkpoint_minutes) {
-      simulation->check_health();
-      results.write_checkpoint(simulation->save());
-      last_checkpoint = Clock::now();
-    }
-    if (progress.due())
-      progress.report(step, step - first_step, figures.seconds, criterion ? forecast.end() : scene.time.steps,
-                      simulation->balance().force_ratio, criterion.has_value());
+    simulation->check_health();
+  } catch (const Diverged& error) {
+    if (!stages || !stages->end_diverged(error.what(), stage_seconds())) throw;
+    diverged = true;
+    progress.finish();
+    if (reports) print_stage(scene, *stages);
   }
-  simulation->check_health();
-  const auto balance = simulation->balance();
+  if (!diverged) figures.balance = simulation->balance();
   progress.report(simulation->step(), simulation->step() - first_step, figures.seconds, simulation->step(),
-                  balance.force_ratio, false);
+                  figures.balance.force_ratio, false);
   progress.finish();
 
-  if (scene.output.every == 0 || simulation->step() % scene.output.every != 0)
-    write_frames(results, scene, *simulation);
   figures.steps = simulation->step();
   figures.steps_timed = simulation->step() - first_step;
   figures.found_static = found_static;
-  figures.balance = balance;
-  take_state(figures, scene, *simulation);
+  if (stages) figures.stages = stages->report();
+  if (!diverged) {
+    if (!stages && (scene.output.every == 0 || simulation->step() % scene.output.every != 0))
+      write_frames(results, scene, *simulation);
+    take_state(figures, scene, *simulation);
+  } else {
+    figures.particles = simulation->particle_count();
+  }
   results.write_summary(summary_json(scene, figures));
   results.remove_checkpoint();
   if (reports) print_report(scene, figures);
-  if (!scene.time.until_static || found_static) return {exit_done, figures};
+  if (!scene.time.until_static || found_static || stages) return {exit_done, figures};
   if (!options.progress_only)
     fmt::print(stderr, "vsb: not static after max_steps = {} (force ratio {:.2e}, energy ratio {:.2e})\n",
-               scene.time.steps, balance.force_ratio, balance.energy_ratio);
+               scene.time.steps, figures.balance.force_ratio, figures.balance.energy_ratio);
   return {exit_not_static, figures};
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -78,12 +79,28 @@ struct StaticSolution {
   BalanceReport balance;      ///< at the initial positions
 };
 
+/// What a run that removes particles in stages (run/stages.hpp) has beside the particles that are left.
+struct StagedState {
+  std::vector<unsigned char> present;  ///< [particle at the start]: not 0 where it is left
+  long long loads_begin = 0;           ///< the step of the last reset
+  std::string stages;                  ///< of run/stages.hpp
+};
+
+/// How a run goes on after a removal of particles.
+struct Restart {
+  bool reset = false;             ///< from the state of the start, loads included; else from the present one
+  std::optional<double> damping;  ///< Cundall's alpha from now on, where it changes
+};
+
 /// The complete state of a run, bit by bit, for checkpoints.
 struct SavedState {
   long long step = 0;
   size_t bytes_per_number = 0;
   std::vector<unsigned char> particles;  ///< raw columns without padding, surface points, void filter
+  StagedState staged;
 };
+
+enum class CellContent : unsigned char { nothing, particles, marked };
 
 class Simulation {
  public:
@@ -91,6 +108,8 @@ class Simulation {
 
   virtual int particle_count() const = 0;
   virtual long long step() const = 0;
+  /// The time that the loads have acted, s: since the start, or since the last reset.
+  virtual double load_time() const = 0;
   virtual int boundary_nodes() const = 0;
   /// Of the bodies with cut lattices, at the start.
   virtual CutVolume cut_volume() const = 0;
@@ -117,6 +136,16 @@ class Simulation {
   virtual BalanceReport balance_under_loads_at(double t) = 0;
   virtual Snapshot snapshot() = 0;
   virtual GridSnapshot grid_snapshot() = 0;
+  /// The equivalent plastic deviatoric strain (Eq. 34) of every particle, smoothed over the nodes or as it
+  /// is. Zero in bodies that are not plastic.
+  virtual std::vector<double> equivalent_plastic_strain(bool smoothed) = 0;
+  /// Volume of the particles with a plastic strain, m^3 (m^2 in 2D).
+  virtual double yielded_volume() = 0;
+  /// What is in the cells of the scene's grid, along x first: nothing, particles, or in the main those with a
+  /// 1 in `marked`.
+  virtual std::vector<CellContent> cell_contents(const std::vector<unsigned char>& marked) = 0;
+  /// Removes the particles with a 1; those that stay keep order and ids. Steps are counted on.
+  virtual void remove(const std::vector<unsigned char>& removed, const Restart& restart) = 0;
   virtual SavedState save() const = 0;
   /// Throws SetupError where the saved state does not fit this scene.
   virtual void restore(const SavedState& saved) = 0;

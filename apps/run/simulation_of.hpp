@@ -10,6 +10,9 @@
 #include <vsb/kernels/balance.hpp>
 #include <vsb/kernels/flag_boundary_particles.hpp>
 #include <vsb/kernels/health.hpp>
+#include <vsb/kernels/plastic_strain.hpp>
+#include <vsb/kernels/remove_particles.hpp>
+#include <vsb/kernels/smooth_particles.hpp>
 #include <vsb/kernels/static_solution.hpp>
 #include <vsb/kernels/unsupported_load.hpp>
 #include "run/basis_of.hpp"
@@ -35,6 +38,8 @@ class SimulationOf final : public Simulation {
     if (!scene.grid.mapped() && Basis::reach == 0) refuse_on_grid_lines(scene, placed_);
     block_ = allocate_particles<Dim, Real, Device>(static_cast<int>(placed_.position.size()));
     fill_particles();
+    placed_count_ = block_.particles.count();
+    make_bodies();
     state_ = make_state(block_.particles, basis_);
     if (scene.method.fill_criterion > 0) set_fill_criterion(state_.occupancy, scene.method.fill_criterion);
     if (scene.method.void_filter) {
@@ -62,6 +67,7 @@ class SimulationOf final : public Simulation {
 
   int particle_count() const override { return state_.particles.count(); }
   long long step() const override { return step_; }
+  double load_time() const override { return load_time_at(step_); }
   int boundary_nodes() const override {
     if constexpr (has_lanes)
       if (lanes_) return lanes_->boundary_nodes();
@@ -96,7 +102,7 @@ class SimulationOf final : public Simulation {
     if constexpr (has_lanes)
       if (lanes_) return advance_lanes(steps);
     for (long long n = 0; n < steps; ++n) {
-      set_loads(static_cast<double>(step_ + 1) * scene_.time.dt);
+      set_loads(load_time_at(step_ + 1));
       const int lost = with_field(
           [&](const auto& field) { return vsb::step(exec_, state_, bodies_, basis_, field, options_); });
       if (lost >= 0) throw_lost(lost);
@@ -153,10 +159,10 @@ class SimulationOf final : public Simulation {
                                    "is not positive (J <= 0)"};
     const auto f = static_cast<size_t>(bad.field);
     throw Diverged(fmt::format("at step {}, time {:.6g} s: {} of particle {} {}", step_, time(), names[f],
-                               bad.particle, faults[f]));
+                               id_of(bad.particle), faults[f]));
   }
 
-  BalanceReport balance() override { return balance_under_loads_at(time()); }
+  BalanceReport balance() override { return balance_under_loads_at(load_time()); }
   BalanceReport balance_under_loads_at(double t) override {
     unpack();
     set_loads(t);
@@ -200,7 +206,7 @@ class SimulationOf final : public Simulation {
     s.volume.resize(n);
     s.mass.resize(n);
     for (size_t i = 0; i < n; ++i) {
-      s.id[i] = static_cast<std::int64_t>(i);
+      s.id[i] = id_of(static_cast<int>(i));
       for (size_t d = 0; d < Dim; ++d) {
         s.position[3 * i + d] = p.position(i, d);
         s.initial_position[3 * i + d] = static_cast<Real>(placed_.position[i][d]);
@@ -213,6 +219,64 @@ class SimulationOf final : public Simulation {
     }
     s.plastic_strain = plastic_strain(p);
     return s;
+  }
+
+  std::vector<double> equivalent_plastic_strain(bool smoothed) override {
+    unpack();
+    const Kokkos::View<Real*, Device> strain("vsb::plastic_strain", static_cast<size_t>(particle_count()));
+    for (const auto& body : bodies_)
+      if (is_plastic(body.material))
+        vsb::equivalent_plastic_strain(exec_, state_.particles, body.first, body.last, body.state_offset,
+                                       strain);
+    if (smoothed) {
+      locate();
+      smooth_particles(exec_, state_.particles, state_.occupancy.bins, basis_, strain, options_.scatter);
+    }
+    exec_.fence();
+    const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), strain);
+    return std::vector<double>(host.data(), host.data() + host.extent(0));
+  }
+
+  double yielded_volume() override {
+    const auto strain = equivalent_plastic_strain(false);
+    const auto host = host_copy(block_);
+    double sum = 0;
+    for (size_t p = 0; p < strain.size(); ++p)
+      if (strain[p] > 0) sum += static_cast<double>(host.particles.volume(p));
+    return sum;
+  }
+
+  std::vector<CellContent> cell_contents(const std::vector<unsigned char>& marked) override {
+    unpack();
+    const auto host = host_copy(block_);
+    size_t cells = 1;
+    for (size_t i = 0; i < Dim; ++i) cells *= static_cast<size_t>(scene_.grid.cells[i]);
+    std::vector<int> surplus(cells, 0);  // of marked particles
+    std::vector<CellContent> contents(cells, CellContent::nothing);
+    for (int p = 0; p < particle_count(); ++p) {
+      const auto cell = basis_.grid.cell_containing(host.particles.position_of(p));
+      int index = 0;
+      for (int i = Dim - 1; i >= 0; --i)
+        index = index * scene_.grid.cells[static_cast<size_t>(i)] + (cell[i] - Basis::reach);
+      const auto c = static_cast<size_t>(index);
+      surplus[c] += marked[static_cast<size_t>(p)] != 0 ? 1 : -1;
+      contents[c] = surplus[c] >= 0 ? CellContent::marked : CellContent::particles;
+    }
+    return contents;
+  }
+
+  void remove(const std::vector<unsigned char>& removed, const Restart& restart) override {
+    unpack();
+    keep(removed);
+    if (restart.damping) options_.damping = static_cast<Real>(*restart.damping);
+    if (restart.reset) {
+      fill_particles();
+      if (block_.state_block.size() > 0) Kokkos::deep_copy(block_.state_block, Real(0));
+      loads_begin_ = step_;
+    }
+    locate();
+    if constexpr (has_lanes)
+      if (lanes_) pack();
   }
 
   GridSnapshot grid_snapshot() override {
@@ -247,9 +311,9 @@ class SimulationOf final : public Simulation {
 
   SavedState save() const override {
     if constexpr (has_lanes)
-      if (lanes_) return {step_, sizeof(Real), lanes_->save()};
+      if (lanes_) return {step_, sizeof(Real), lanes_->save(), staged_state()};
     const auto host = host_copy(block_);
-    SavedState saved{step_, sizeof(Real), std::vector<unsigned char>(saved_bytes())};
+    SavedState saved{step_, sizeof(Real), std::vector<unsigned char>(saved_bytes()), staged_state()};
     unsigned char* to = saved.particles.data();
     for_each_column(host, [&](const Real* column, size_t bytes) {
       std::memcpy(to, column, bytes);
@@ -269,6 +333,7 @@ class SimulationOf final : public Simulation {
   }
 
   void restore(const SavedState& saved) override {
+    restore_staged(saved.staged);
     if constexpr (has_lanes)
       if (lanes_) return restore_lanes(saved);
     if (saved.bytes_per_number != sizeof(Real) || saved.particles.size() != saved_bytes())
@@ -319,6 +384,66 @@ class SimulationOf final : public Simulation {
            state_.occupancy.cells.outside.span() * sizeof(std::uint64_t);
   }
 
+  /// Takes particles out of everything that counts them.
+  void keep(const std::vector<unsigned char>& removed) {
+    const Kokkos::View<unsigned char*, Device> flags("vsb::removed_particles", removed.size());
+    const auto on_host = Kokkos::create_mirror_view(flags);
+    std::copy(removed.begin(), removed.end(), on_host.data());
+    Kokkos::deep_copy(flags, on_host);
+    const auto kept = list_kept<ExecutionSpace, Device>(exec_, flags);
+    const auto host_kept = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), kept);
+    std::vector<int> ids, states;
+    for (size_t k = 0; k < host_kept.extent(0); ++k) {
+      const auto p = static_cast<size_t>(host_kept(k));
+      ids.push_back(id_of(host_kept(k)));
+      placed_.position[k] = placed_.position[p];
+      placed_.volume[k] = placed_.volume[p];
+    }
+    placed_.position.resize(ids.size());
+    placed_.volume.resize(ids.size());
+    ids_ = std::move(ids);
+    for (size_t b = 0, first = 0; b < bodies_.size(); ++b) {
+      auto& body = bodies_[b];
+      const bool has_state = state_size<Dim>(body.material) > 0;
+      const int rows_before = static_cast<int>(states.size());
+      const auto begin = static_cast<int>(first);
+      for (; first < host_kept.extent(0) && host_kept(first) < body.last; ++first)
+        if (has_state) states.push_back(host_kept(first) + body.state_offset);
+      placed_.bodies[b] = {begin, static_cast<int>(first)};
+      body.first = begin;
+      body.last = static_cast<int>(first);
+      body.state_offset = has_state ? rows_before - begin : 0;
+    }
+    const Kokkos::View<int*, Device> kept_states("vsb::kept_states", states.size());
+    const auto host_states = Kokkos::create_mirror_view(kept_states);
+    std::copy(states.begin(), states.end(), host_states.data());
+    Kokkos::deep_copy(kept_states, host_states);
+    block_ = keep_particles<ExecutionSpace, Dim, Real, Device>(exec_, block_, kept, kept_states);
+    state_.particles = block_.particles;
+    state_.occupancy.bins = allocate_bins<Device>(particle_count(), basis_.bin_count());
+  }
+
+  /// The particles that are left, of all there were at the start.
+  StagedState staged_state() const {
+    if (!scene_.removal) return {};
+    StagedState staged;
+    staged.loads_begin = loads_begin_;
+    staged.present.assign(static_cast<size_t>(placed_count_), ids_.empty() ? 1 : 0);
+    for (const int id : ids_) staged.present[static_cast<size_t>(id)] = 1;
+    return staged;
+  }
+  void restore_staged(const StagedState& staged) {
+    if (!scene_.removal) return;
+    if (staged.present.size() != static_cast<size_t>(placed_count_) || !ids_.empty())
+      throw SetupError("the checkpoint belongs to another scene: it has other particles");
+    std::vector<unsigned char> removed(staged.present);
+    for (auto& flag : removed) flag = flag == 0;
+    Restart restart;
+    if (!scene_.removal->reset) restart.damping = scene_.removal->damping;
+    if (std::find(removed.begin(), removed.end(), 1) != removed.end()) remove(removed, restart);
+    loads_begin_ = staged.loads_begin;
+  }
+
   static constexpr bool has_lanes = std::is_same_v<Basis, LinearBasis<Dim, Real>>;
 
   /// Packs the particles into cell lanes.
@@ -335,8 +460,9 @@ class SimulationOf final : public Simulation {
     setup.material = bodies_.front().material;
     setup.state_size = state_size<Dim>(setup.material);
     setup.options = options_;
-    lanes_ = std::make_unique<LaneEngine<Dim, Real>>(setup, state_.particles, state_.surface);
     packed_ = false;
+    lanes_.reset();  // its memory first
+    lanes_ = std::make_unique<LaneEngine<Dim, Real>>(setup, state_.particles, state_.surface);
   }
   /// Brings the particles back from the lanes, where they moved there.
   void unpack() const {
@@ -347,12 +473,12 @@ class SimulationOf final : public Simulation {
   }
   void advance_lanes(long long steps) {
     if (!lanes_->prepared()) {
-      set_loads(static_cast<double>(step_ + 1) * scene_.time.dt);
+      set_loads(load_time_at(step_ + 1));
       const int lost = lanes_->prepare(loads_);
       if (lost >= 0) throw_lost(lost);
     }
     for (long long n = 0; n < steps; ++n) {
-      set_loads(static_cast<double>(step_ + 2) * scene_.time.dt);
+      set_loads(load_time_at(step_ + 2));
       packed_ = true;
       const int lost = lanes_->step(loads_);
       ++step_;
@@ -399,6 +525,10 @@ class SimulationOf final : public Simulation {
   }
 
   double time() const { return static_cast<double>(step_) * scene_.time.dt; }
+  double load_time_at(long long step) const {
+    return static_cast<double>(step - loads_begin_) * scene_.time.dt;
+  }
+  int id_of(int p) const { return ids_.empty() ? p : ids_[static_cast<size_t>(p)]; }
 
   void set_loads(double t) {
     loads_.set_time(scene_, t);
@@ -430,9 +560,14 @@ class SimulationOf final : public Simulation {
         p.volume(i) = static_cast<Real>(placed_.volume[i]);
         p.mass(i) = static_cast<Real>(body.density * placed_.volume[i]);
       }
-      bodies_.push_back({range.first, range.last, material_of<Real>(body.material)});
     }
     Kokkos::deep_copy(block_.block, host.block);
+  }
+
+  void make_bodies() {
+    for (size_t b = 0; b < scene_.bodies.size(); ++b)
+      bodies_.push_back(
+          {placed_.bodies[b].first, placed_.bodies[b].last, material_of<Real>(scene_.bodies[b].material)});
     allocate_states();
   }
 
@@ -643,7 +778,7 @@ class SimulationOf final : public Simulation {
                            host.particles.position(static_cast<size_t>(particle), static_cast<size_t>(i)));
     throw Diverged(
         fmt::format("at step {}, time {:.6g} s: position of particle {}, ({}) m, is outside the grid", step_,
-                    time(), particle, where));
+                    time(), id_of(particle), where));
   }
 
   Scene scene_;
@@ -654,11 +789,13 @@ class SimulationOf final : public Simulation {
   Loads<Dim, Real> loads_;
   std::vector<Resultant> resultants_;  ///< of each traction at full load
   TractionMask surface_tractions_ = 0;
+  int placed_count_ = 0;  ///< particles at the start
   ParticleBlock<Dim, Real, Device> block_;
   State<Dim, Real, Device> state_;
   std::vector<Body<Real>> bodies_;
   StepOptions<Dim, Real> options_{};
-  long long step_ = 0;
+  long long step_ = 0, loads_begin_ = 0;
+  std::vector<int> ids_;  ///< of the particles that are left; empty before a removal
   std::string particle_kernels_because_;
   std::unique_ptr<LaneEngine<Dim, Real>> lanes_;
   mutable bool packed_ = false;  ///< whether the particles moved on in lanes_ alone

@@ -36,8 +36,8 @@ std::string text(const Point& p) {
 }  // namespace
 
 double RunFigures::ns_per_particle_step() const {
-  const auto sweeps = static_cast<double>(steps_timed + iterations);
-  return sweeps > 0 ? 1e9 * seconds / (static_cast<double>(particles) * sweeps) : 0;
+  const double sweeps = particle_steps + static_cast<double>(particles) * static_cast<double>(iterations);
+  return sweeps > 0 ? 1e9 * seconds / sweeps : 0;
 }
 
 std::vector<std::pair<std::string, double>> named_figures(const Scene& scene, const RunFigures& f) {
@@ -53,6 +53,10 @@ std::vector<std::pair<std::string, double>> named_figures(const Scene& scene, co
   if (scene.method.void_filter) {
     named.emplace_back("false_voids", f.void_filter.false_voids);
     named.emplace_back("dropped_nodes", f.void_filter.dropped_nodes);
+  }
+  if (scene.removal) {
+    const auto staged = stage_figures(f.stages, scene.removal->max_stages, scene.removal->hole.has_value());
+    named.insert(named.end(), staged.begin(), staged.end());
   }
   for (size_t c = 0; c < static_cast<size_t>(scene.dimension); ++c)
     for (const auto& [name, force] :
@@ -123,6 +127,7 @@ std::string summary_json(const Scene& scene, const RunFigures& f) {
     summary.insert("resultant", toml::table{{"load", f.share.load},
                                             {"net_force_share", f.share.net_force},
                                             {"net_torque_share", f.share.net_torque}});
+  if (scene.removal) summary.insert("removal", toml::table(toml::parse(to_toml(f.stages))));
   if (f.cut.particles > 0)
     summary.insert("cut_bodies", toml::table{{"volume", f.cut.particles + f.cut.dropped},
                                              {"particle_volume", f.cut.particles}});
@@ -202,7 +207,7 @@ void print_report(const Scene& scene, const RunFigures& f) {
   print_moment_fit(scene, f.moment_fit, "");
   const auto& b = f.balance;
   fmt::print("force ratio {:.2e}, energy ratio {:.2e}\n", b.force_ratio, b.energy_ratio);
-  print_resultant(scene, b, "");
+  if (!scene.removal) print_resultant(scene, b, "");  // the surface of the start is there no longer
   if (scene.method.void_filter)
     fmt::print("void filter: {} false voids inside the bodies, {} boundary nodes dropped, {} left\n",
                f.void_filter.false_voids, f.void_filter.dropped_nodes, f.boundary_nodes);

@@ -10,6 +10,7 @@
 #include "run/resultant_share.hpp"
 #include "run/simulation.hpp"
 #include "run/solution.hpp"
+#include "run/stage_report.hpp"
 
 namespace vsb::app {
 
@@ -17,6 +18,7 @@ struct RunFigures {
   long long steps = 0;        ///< step number at the end
   long long steps_timed = 0;  ///< steps made by this program, fewer after a resume
   double seconds = 0;         ///< wall time of those steps alone
+  double particle_steps = 0;  ///< sum over those steps of the particles there were
   Solution solution = Solution::steps;
   int iterations = 0;  ///< of a static solution
   bool found_static = false;
@@ -27,6 +29,7 @@ struct RunFigures {
   VoidFilterReport void_filter;
   BalanceReport balance;
   ResultantShare share;    ///< of a balance alone
+  StagesReport stages;     ///< where particles are removed in stages
   std::string state_hash;  ///< of the particles' bits at the end
   std::vector<std::pair<std::string, double>> errors;
   std::vector<std::pair<std::string, double>> compared;  ///< figures of the comparison that are no errors

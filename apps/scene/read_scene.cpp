@@ -16,6 +16,7 @@
 #include "scene/read_material.hpp"
 #include "scene/read_moment_fit.hpp"
 #include "scene/read_region.hpp"
+#include "scene/read_removal.hpp"
 #include "scene/read_stress_field.hpp"
 #include "scene/scene.hpp"
 #include "scene/toml_reader.hpp"
@@ -311,11 +312,12 @@ YieldingCylinderComparison read_yielding_cylinder(TableReader& r, const Material
   YieldingCylinderComparison c{};
   c.inner_radius = r.number("inner_radius", Range::positive(), {}, "m");
   c.outer_radius = r.number("outer_radius", {c.inner_radius, Range::any().max, true, false}, {}, "m");
-  const ExactMohrCoulombCylinder<double> exact{
-      c.inner_radius, c.outer_radius, 0, material.cohesion, material.friction_angle, material.poisson_ratio};
-  c.pressure = r.number(
-      "pressure", {0, std::min(exact.collapse_pressure(), exact.largest_pressure()), true, true}, {},
-      "Pa, positive in compression; less than the collapse load, sigma_zz the intermediate principal stress");
+  const double collapse =
+      ExactMohrCoulombCylinder<double>{c.inner_radius,    c.outer_radius,          0,
+                                       material.cohesion, material.friction_angle, material.poisson_ratio}
+          .collapse_pressure();
+  c.pressure = r.number("pressure", {0, collapse, true, true}, {},
+                        "Pa, positive in compression, less than the collapse load");
   return c;
 }
 
@@ -413,7 +415,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
   ResolvedTable resolved;
   TableReader r(document, "", resolved);
   r.allow_only({"name", "title", "setting", "dimension", "precision", "gravity", "grid", "faces", "body",
-                "traction", "method", "time", "static", "output", "compare", "published"});
+                "traction", "method", "time", "static", "removal", "output", "compare", "published"});
   Scene scene;
   scene.name = r.text("name", std::filesystem::path(path).stem().string());
   if (scene.name.empty() || scene.name.find_first_of("/\\ \t\n") != std::string::npos ||
@@ -464,6 +466,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
         "nothing loads the bodies (no traction, gravity, initial stress or velocity), so there is no static "
         "state to run to");
   scene.static_solution = read_static(r.table("static"));
+  scene.removal = read_removal(r, scene);
   scene.output = read_output(r.table("output"), scene);
   scene.compare = read_comparison(r, scene.bodies.front().material, scene.method.basis, scene.more_norms);
   for (auto& table : r.tables("published")) scene.published.push_back(read_published(table, scene));

@@ -14,6 +14,7 @@
 #include "scene/lattice.hpp"
 #include "scene/material_spec.hpp"
 #include "scene/region.hpp"
+#include "scene/removal_spec.hpp"
 #include "scene/stress_field.hpp"
 #include "scene/time_function.hpp"
 
@@ -159,6 +160,7 @@ struct Scene {
   MethodSpec method;
   TimeSpec time;
   StaticSpec static_solution;
+  std::optional<RemovalSpec> removal;
   OutputSpec output;
   Comparison compare;
   MoreNorms more_norms;

@@ -6,7 +6,10 @@
 #include <vsb/kernels/balance.hpp>
 #include <vsb/kernels/flag_boundary_particles.hpp>
 #include <vsb/kernels/health.hpp>
+#include <vsb/kernels/plastic_strain.hpp>
+#include <vsb/kernels/remove_particles.hpp>
 #include <vsb/kernels/self_balance.hpp>
+#include <vsb/kernels/smooth_particles.hpp>
 #include <vsb/kernels/static_solution.hpp>
 #include <vsb/kernels/unsupported_load.hpp>
 
@@ -117,6 +120,13 @@ void run_everything(const Basis& basis, const UniformGrid<Dim, double>& grid, Sc
   void_filter_effect(Exec(), block.particles, state.occupancy.cells, basis, state.occupancy.tractions, 0);
   flag_boundary_particles(Exec(), block.particles, state.occupancy.boundary, basis, flag);
   displace_particles(Exec(), block.particles, basis, u);
+  const Kokkos::View<double*, Device> strain("vsb::strain", 64);
+  auto yielded = allocate_particles<Dim, double, Device>(64);
+  allocate_material_state(yielded, 64, 6);
+  equivalent_plastic_strain(Exec(), yielded.particles, 0, 64, 0, strain);
+  smooth_particles(Exec(), block.particles, state.occupancy.bins, basis, strain, strategy);
+  const auto kept = list_kept<Exec, Device>(Exec(), flag);
+  keep_particles<Exec, Dim, double, Device>(Exec(), yielded, kept, kept);
 }
 
 }  // namespace
@@ -169,6 +179,10 @@ TEST_CASE("every label starts with vsb::") {
                              "region: vsb::solve_displacement",
                              "for: vsb::stiffness_force",
                              "reduce: vsb::strain_particles",
+                             "for: vsb::equivalent_plastic_strain",
+                             "for: vsb::interpolate_mean",
+                             "scan: vsb::list_kept",
+                             "for: vsb::store_rows",
                              "allocation: vsb::particles",
                              "allocation: vsb::bin_sums"}) {
     CAPTURE(report);

@@ -18,6 +18,12 @@ REASONS = {
     "cylinder-voids": "method.void_filter is on",
 }
 
+# Of large scenes a few layers of cells, in double precision.
+PARTS = {
+    "wellbore": ("--set", "grid.upper=[0.084,0.084,0.006]", "--set", "precision=double"),
+    "wellbore-quarter": ("--set", "grid.upper=[0.084,0.084,0.006]"),
+}
+
 
 OTHER_IMPOSITIONS = ("virtual_stress_original", "boundary_particles", "material_points", "nodal")
 
@@ -26,7 +32,7 @@ def hundred_steps(scene):
     """Undamped: where a node is at rest but for round-off, Cundall's damping takes its sign from round-off."""
     text = (SCENES / f"{scene}.toml").read_text()
     steps = "time.until_static.max_steps=100" if "until_static" in text else "time.steps=100"
-    return "--set", steps, "--set", "method.damping=0"
+    return "--set", steps, "--set", "method.damping=0", *PARTS.get(scene, ())
 
 
 def scales(scene, fields, dt):
