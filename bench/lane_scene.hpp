@@ -74,10 +74,10 @@ double state_bytes(const Lane<Dim, Real>& s) {
   const auto& l = s.memory.lanes;
   const auto& n = s.memory.nodes;
   const auto& b = s.boundary;
-  return size(l.data) + size(l.id) + size(l.held) + size(l.mass_matrices) + size(l.groups) + size(l.layer_first) + size(l.plane_first) +
-         size(l.group_at) + size(l.chunk_at) + size(n.data) + size(n.fixed) + size(b.bits.occupied) +
-         size(b.bits.exterior) + size(b.bits.boundary) + size(b.marked) + size(b.active) + size(b.changed) +
-         size(b.tractions) + size(b.declared);
+  return size(l.data) + size(l.id) + size(l.held) + size(l.mass_matrices) + size(l.groups) +
+         size(l.layer_first) + size(l.plane_first) + size(l.group_at) + size(l.chunk_at) + size(n.data) +
+         size(n.fixed) + size(b.bits.occupied) + size(b.bits.exterior) + size(b.bits.boundary) +
+         size(b.marked) + size(b.active) + size(b.changed) + size(b.tractions) + size(b.declared);
 }
 
 }  // namespace vsb::bench
