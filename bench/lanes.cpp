@@ -39,7 +39,8 @@ struct Packed {
           kernel::MoveLanes<true, Field, LinearElastic<Real>, DeterminantVolume, Dim, Real, Device>{
               detail::loaded_lanes(lanes),
               {m.lanes, m.nodes, m.grid, column.material, {}, m.leavers},
-              field});
+              field,
+              true});
     });
   }
   Kokkos::RangePolicy<Exec> over_chunks() const {
