@@ -346,11 +346,13 @@ View scratch(View& kept, size_t n) {
   return Kokkos::subview(kept, std::make_pair(size_t(0), n));
 }
 
-/// Columns and numbers for `slots` slots.
+/// Columns and numbers for `slots` slots. What is not written to, as slots kept in reserve are not, takes no
+/// memory.
 template <int Dim, class Real, class Device>
 void allocate_particle_columns(CellLanes<Dim, Real, Device>& lanes, int slots) {
   const auto entries = static_cast<size_t>(padded_rows<Real>(slots * lanes.width));
-  lanes.data = decltype(lanes.data)("vsb::cell_lanes", entries, static_cast<size_t>(lanes.columns()));
+  lanes.data = decltype(lanes.data)(Kokkos::view_alloc("vsb::cell_lanes", Kokkos::WithoutInitializing),
+                                    entries, static_cast<size_t>(lanes.columns()));
   lanes.id = decltype(lanes.id)(Kokkos::view_alloc("vsb::lane_ids", Kokkos::WithoutInitializing), entries);
   lanes.held = decltype(lanes.held)("vsb::lanes_held", static_cast<size_t>(slots));
 }

@@ -108,8 +108,7 @@ template <int Dim, class Real, class Device>
 void make_more_room(LaneState<Dim, Real, Device>& s, const HomelessCount& homeless) {
   auto& m = s.memory;
   if (s.steps_since_repacked < 100) {
-    const int per_cell = m.lanes.particle_count / math::max(1, m.lanes.group_count * m.lanes.width);
-    if (homeless.without_slot > 0) m.slack = math::min(m.slack + 2, 2 + per_cell);
+    if (homeless.without_slot > 0) m.slack = math::min(m.slack + 1, 4);
   } else if (s.steps_since_repacked >= 1000) {
     m.slack = 1;
     m.reach = {};

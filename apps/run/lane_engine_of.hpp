@@ -3,6 +3,7 @@
 /// The members of LaneEngine, compiled for each dimension and precision on its own.
 #pragma once
 
+#include <algorithm>
 #include <cstring>
 
 #include "run/lane_engine.hpp"
@@ -61,6 +62,17 @@ class Reader {
 template <class View>
 auto on_host(const View& view) {
   return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), view);
+}
+
+/// The numbers of the slots in use.
+inline std::vector<size_t> slots_in_use(const std::vector<GroupShape>& groups) {
+  std::vector<size_t> used;
+  size_t first = 0;
+  for (const auto& group : groups) {
+    for (int s = 0; s < group.slots; ++s) used.push_back(first + static_cast<size_t>(s));
+    first += static_cast<size_t>(group.capacity);
+  }
+  return used;
 }
 
 /// An array as long as the view.
@@ -171,7 +183,13 @@ std::vector<unsigned char> LaneEngine<Dim, Real>::save() const {
   w.array(shape.data(), shape.size());
   w.array(detail::on_host(l.id).data(), entries);
   const auto data = detail::on_host(l.data);
-  for (int c = 0; c < l.columns(); ++c) w.array(&data(0, static_cast<size_t>(c)), entries);
+  const auto used = detail::slots_in_use(shape);
+  std::vector<Real> column(used.size() * l.width);
+  for (int c = 0; c < l.columns(); ++c) {
+    for (size_t n = 0; n < used.size(); ++n)
+      std::copy_n(&data(used[n] * l.width, static_cast<size_t>(c)), l.width, &column[n * l.width]);
+    w.array(column.data(), column.size());
+  }
   const auto sums = detail::on_host(m.nodes.data);
   for (int c = 0; c < 2 * m.nodes.sum_columns; ++c) w.array(&sums(0, static_cast<size_t>(c)), nodes);
   w.array(detail::on_host(l.mass_matrices).data(), l.mass_matrices.size());
@@ -227,8 +245,13 @@ bool LaneEngine<Dim, Real>::restore(const std::vector<unsigned char>& saved) {
   }
   Kokkos::deep_copy(l.held, held);
   const auto data = Kokkos::create_mirror_view(l.data);
-  for (int c = 0; c < l.columns(); ++c)
-    if (!r.array(&data(0, static_cast<size_t>(c)), entries)) return false;
+  const auto used = detail::slots_in_use(shape);
+  std::vector<Real> column(used.size() * l.width);
+  for (int c = 0; c < l.columns(); ++c) {
+    if (!r.array(column.data(), column.size())) return false;
+    for (size_t n = 0; n < used.size(); ++n)
+      std::copy_n(&column[n * l.width], l.width, &data(used[n] * l.width, static_cast<size_t>(c)));
+  }
   Kokkos::deep_copy(l.data, data);
   const auto sums = Kokkos::create_mirror_view(m.nodes.data);
   for (int c = 0; c < 2 * m.nodes.sum_columns; ++c)
