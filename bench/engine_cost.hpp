@@ -128,11 +128,10 @@ Lane<3, Real> make_measured_lanes(Column<3, Real>& column, const CostCase& what,
   reset_peak();
   column = make_column<3, Real>(what.size, Load::free_faces, axis);
   const int particles = particle_count<3>(what.size);
-  auto s = make_lanes(column);
+  auto s = make_lanes_of(column);
   prepare_lane_step(Exec(), s, column.virtual_stress);
   step(column, s, column.virtual_stress);
   record.set("peak bytes", (peak_bytes() - start) / particles);
-  column.block = {};
   reset_peak();
   for (int n = 0; n < 3; ++n) step(column, s, column.virtual_stress);
   record.set("stepping bytes", (peak_bytes() - start) / particles);

@@ -28,19 +28,27 @@ void apply_load(const Column<Dim, Real>& column, Lane<Dim, Real>& s) {
   mark_lanes(Exec(), s.memory.lanes, s.memory.grid.cells, b, true);
 }
 
-/// Packs the column's particles.
-template <int Dim, class Real>
-Lane<Dim, Real> make_lanes(const Column<Dim, Real>& column) {
+/// Lanes for the column's particles, which `pack(state)` packs.
+template <int Dim, class Real, class Pack>
+Lane<Dim, Real> make_lanes(const Column<Dim, Real>& column, const Pack& pack) {
   Lane<Dim, Real> s;
   s.memory.grid = column.basis.grid;
   if (column.options.damping > 0)  // at rest
     s.memory.walls.fixed[column.axis][0] = static_cast<ComponentMask>((1 << Dim) - 1);
   s.boundary.everywhere = column.load == Load::free_faces ? 1 : 0;
-  if (pack_lanes(Exec(), column.block.particles, s) >= 0)
-    throw std::runtime_error("a particle of the column is outside its grid");
+  if (pack(s) >= 0) throw std::runtime_error("a particle of the column is outside its grid");
   if (column.load == Load::end_face) apply_load(column, s);
   Kokkos::fence();
   return s;
+}
+template <int Dim, class Real>
+Lane<Dim, Real> make_lanes(const Column<Dim, Real>& column) {
+  return make_lanes(column, [&](auto& s) { return pack_lanes(Exec(), column.block.particles, s); });
+}
+/// The same, and the column is without its particles afterwards.
+template <int Dim, class Real>
+Lane<Dim, Real> make_lanes_of(Column<Dim, Real>& column) {
+  return make_lanes(column, [&](auto& s) { return pack_lanes(Exec(), std::move(column.block), s); });
 }
 
 /// One step with a virtual stress field.
@@ -74,10 +82,11 @@ double state_bytes(const Lane<Dim, Real>& s) {
   const auto& l = s.memory.lanes;
   const auto& n = s.memory.nodes;
   const auto& b = s.boundary;
-  return size(l.data) + size(l.id) + size(l.held) + size(l.mass_matrices) + size(l.groups) +
-         size(l.layer_first) + size(l.plane_first) + size(l.group_at) + size(l.chunk_at) + size(n.data) +
-         size(n.fixed) + size(b.bits.occupied) + size(b.bits.exterior) + size(b.bits.boundary) +
-         size(b.marked) + size(b.active) + size(b.changed) + size(b.tractions) + size(b.declared);
+  const double columns = static_cast<double>(l.slot_count) * l.width * l.columns() * sizeof(Real);
+  return columns + size(l.id) + size(l.held) + size(l.mass_matrices) + size(l.groups) + size(l.layer_first) +
+         size(l.plane_first) + size(l.group_at) + size(l.chunk_at) + size(n.data) + size(n.fixed) +
+         size(b.bits.occupied) + size(b.bits.exterior) + size(b.bits.boundary) + size(b.marked) +
+         size(b.active) + size(b.changed) + size(b.tractions) + size(b.declared);
 }
 
 }  // namespace vsb::bench

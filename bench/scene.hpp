@@ -14,6 +14,7 @@
 #include <string>
 #include <type_traits>
 #include <vector>
+#include <vsb/kernels/build_lanes.hpp>
 #include <vsb/kernels/step.hpp>
 #include <vsb/physics/linear_basis.hpp>
 
@@ -169,7 +170,7 @@ Column<Dim, Real> make_column(const Size& size, Load load, int axis = Dim - 1) {
   s.material = LinearElastic<Real>::from_young(E, nu);
   const double M = static_cast<double>(s.material.constrained_modulus());
   s.basis = make_basis<Dim, Real>(size, axis);
-  s.block = allocate_particles<Dim, Real, Device>(particle_count<Dim>(size));
+  s.block = allocate_particles_to_pack<Dim, Real, Device>(particle_count<Dim>(size));
   const double strain = 1e-3 * s.spacing() / s.length;  // moves the free end by 0.001 cells
   s.pressure = strain * E;
   s.options.dt = static_cast<Real>(time_step(0.2, s.spacing(), M, s.density));

@@ -192,42 +192,48 @@ struct NumberNodes {
   }
 };
 
-/// One group, from particles sorted by cell.
+/// Who is where in one group, from particles sorted by cell.
 template <int Dim, class Real, class Device>
-struct PackGroup {
+struct PackNumbers {
   CellLanes<Dim, Real, Device> lanes;
-  Particles<Dim, Real, Device> particles;
   ParticleBins<Device> bins;
-  UniformGrid<Dim, Real> grid;
 
   KOKKOS_FUNCTION void operator()(int g) const {
     constexpr int width = Lanes<Real>::width;
     const auto& group = lanes.groups(g);
     const int first_bin = (group.row * lanes.groups_per_row() + group.x) * width;
-    for (int l = 0; l < width; ++l) {
-      const int begin = bins.offset(first_bin + l), count = bins.offset(first_bin + l + 1) - begin;
-      for (int s = 0; s < group.capacity; ++s) {
-        const size_t e = static_cast<size_t>(group.first + s) * width + static_cast<size_t>(l);
-        lanes.clear(e);
-        if (s < count) pack(bins.order(begin + s), e, lanes.cell(group, l));
-        auto& held = lanes.held(group.first + s);
-        held = (l == 0 ? 0 : held) | (s < count ? LaneMask(1) << l : 0);
+    for (int s = 0; s < group.capacity; ++s) {
+      LaneMask held = 0;
+      for (int l = 0; l < width; ++l) {
+        const int begin = bins.offset(first_bin + l), count = bins.offset(first_bin + l + 1) - begin;
+        lanes.id((group.first + s) * width + l) = s < count ? bins.order(begin + s) : -1;
+        if (s < count) held |= LaneMask(1) << l;
       }
+      lanes.held(group.first + s) = held;
     }
   }
-  KOKKOS_FUNCTION void pack(int p, size_t e, const Vector<Dim, int>& cell) const {
-    const auto q = grid.in_cells(particles.position_of(p));
-    for (int i = 0; i < Dim; ++i) {
-      *lanes.at(lanes.xi_column + i, e) = q[i] - static_cast<Real>(cell[i]);
-      *lanes.at(lanes.velocity_column + i, e) = particles.velocity(p, i);
+};
+
+/// One column of a group: the slots in use.
+template <int Dim, class Real, class Device>
+struct PackColumn {
+  CellLanes<Dim, Real, Device> lanes;
+  typename Particles<Dim, Real, Device>::Scalars of_particle;
+  UniformGrid<Dim, Real> grid;
+  int column;
+
+  KOKKOS_FUNCTION void operator()(int g) const {
+    const auto& group = lanes.groups(g);
+    const bool coordinate = column < Dim;
+    for (size_t e = lanes.begin(group); e < lanes.end(group); ++e) {
+      const int p = lanes.id(e);
+      Real value = p < 0 ? Real(0) : of_particle(p);
+      if (coordinate)
+        value = p < 0 ? Real(0.5)
+                      : grid.in_cells(value, column) -
+                            static_cast<Real>(lanes.cell(group, static_cast<int>(e % lanes.width))[column]);
+      *lanes.at(column, e) = value;
     }
-    *lanes.at(lanes.mass_column, e) = particles.mass(p);
-    *lanes.at(lanes.volume_column, e) = particles.volume(p);
-    for (int c = 0; c < lanes.stress_size; ++c)
-      *lanes.at(lanes.stress_column + c, e) = particles.cauchy_stress(p, c);
-    for (int c = 0; c < lanes.state_size; ++c)
-      *lanes.at(lanes.state_column + c, e) = particles.material_state(p, c);
-    lanes.id(e) = p;
   }
 };
 
@@ -346,14 +352,27 @@ View scratch(View& kept, size_t n) {
   return Kokkos::subview(kept, std::make_pair(size_t(0), n));
 }
 
-/// Columns and numbers for `slots` slots. What is not written to, as slots kept in reserve are not, takes no
-/// memory.
+/// Rows to allocate for some that grow: on the host, rows that are not written to take no memory.
+template <class Device>
+int with_room(int rows) {
+  using Memory = typename Device::memory_space;
+  return Kokkos::SpaceAccessibility<Kokkos::HostSpace, Memory>::accessible ? 2 * rows : rows + rows / 16;
+}
+
+/// Columns for `slots` slots, and room for more.
 template <int Dim, class Real, class Device>
-void allocate_particle_columns(CellLanes<Dim, Real, Device>& lanes, int slots) {
-  const auto entries = static_cast<size_t>(padded_rows<Real>(slots * lanes.width));
-  lanes.data = decltype(lanes.data)(Kokkos::view_alloc("vsb::cell_lanes", Kokkos::WithoutInitializing),
-                                    entries, static_cast<size_t>(lanes.columns()));
-  lanes.id = decltype(lanes.id)(Kokkos::view_alloc("vsb::lane_ids", Kokkos::WithoutInitializing), entries);
+void allocate_columns(CellLanes<Dim, Real, Device>& lanes, int slots) {
+  lanes.data =
+      decltype(lanes.data)(Kokkos::view_alloc("vsb::cell_lanes", Kokkos::WithoutInitializing),
+                           static_cast<size_t>(padded_rows<Real>(with_room<Device>(slots) * lanes.width)),
+                           static_cast<size_t>(lanes.columns()));
+}
+
+/// Numbers of particles for `slots` slots.
+template <int Dim, class Real, class Device>
+void allocate_numbers(CellLanes<Dim, Real, Device>& lanes, int slots) {
+  lanes.id = decltype(lanes.id)(Kokkos::view_alloc("vsb::lane_ids", Kokkos::WithoutInitializing),
+                                static_cast<size_t>(slots) * lanes.width);
   lanes.held = decltype(lanes.held)("vsb::lanes_held", static_cast<size_t>(slots));
 }
 
@@ -389,8 +408,8 @@ void number_nodes(const Exec& exec, LaneMemory<Dim, Real, Device>& m) {
                        kernel::FixLaneNodes<Dim, Real, Device>{lanes, m.nodes, m.grid.cells, m.walls});
 }
 
-/// Groups and nodes for a box and the number of particles in each of its
-/// cells; the columns and numbers of the particles are left to the caller.
+/// Groups and nodes for a box and the number of particles in each of its cells; the columns and numbers of
+/// the particles are left to the caller.
 template <class Exec, int Dim, class Real, class Device>
 void number_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const CellBox<Dim>& box,
                   const typename CellLanes<Dim, Real, Device>::Ints& count) {
@@ -436,8 +455,7 @@ void number_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const Cell
              m.sweeps == Sweeps::one || (m.sweeps == Sweeps::chosen && one_sweep_is_faster(lanes, cells)));
 }
 
-/// Lists with room for all particles of their layers; memory that nobody
-/// writes to is not taken.
+/// Lists with room for all particles of their layers; memory that nobody writes to is not taken.
 template <class Exec, int Dim, class Real, class Device>
 void allocate_leavers(const Exec& exec, LaneMemory<Dim, Real, Device>& m) {
   const auto& lanes = m.lanes;
@@ -467,9 +485,8 @@ struct GroupShape {
   int x, row, slots, capacity;
 };
 
-/// Lays lanes out as others were; columns and numbers of the particles are
-/// left to the caller. False where that makes no sense, and then nothing is
-/// changed.
+/// Lays lanes out as others were; columns and numbers of the particles are left to the caller. False where
+/// that makes no sense, and then nothing is changed.
 template <class Exec, int Dim, class Real, class Device>
 bool lay_out_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const CellBox<Dim>& box,
                    const std::vector<GroupShape>& shape) {
@@ -500,17 +517,20 @@ bool lay_out_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const Cel
   Kokkos::deep_copy(lanes.groups, groups);
   m.lanes = lanes;
   detail::number_nodes(exec, m);
-  detail::allocate_particle_columns(m.lanes, m.lanes.slot_count);
+  detail::allocate_columns(m.lanes, m.lanes.slot_count);
+  detail::allocate_numbers(m.lanes, m.lanes.slot_count);
   detail::allocate_leavers(exec, m);
   exec.fence();
   return true;
 }
 
-/// Packs particles that all lie in the grid. Returns -1, or the lowest number
-/// of one that does not.
+namespace detail {
+
+/// Finds groups for the particles, and says who is where; the columns are left to the caller. Returns -1, or
+/// the lowest number of a particle outside the grid.
 template <class Exec, int Dim, class Real, class Device>
-int pack_particles(const Exec& exec, const Particles<Dim, Real, Device>& particles,
-                   LaneMemory<Dim, Real, Device>& m) {
+int lay_out_particles(const Exec& exec, const Particles<Dim, Real, Device>& particles,
+                      LaneMemory<Dim, Real, Device>& m) {
   using Cells = CellLanes<Dim, Real, Device>;
   const int n = particles.count();
   Vector<Dim, int> lowest, highest;
@@ -521,8 +541,7 @@ int pack_particles(const Exec& exec, const Particles<Dim, Real, Device>& particl
                               kernel::CellRange<Dim, Real, Device>{particles, m.grid, i, sign},
                               Kokkos::Min<int>(found));
       exec.fence();
-      // A reduction over nothing, or over particles outside alone, leaves the
-      // largest number there is.
+      // A reduction over nothing, or over particles outside alone, leaves the largest number there is.
       const int cell = found == std::numeric_limits<int>::max() ? 0 : sign * found;
       (sign > 0 ? lowest : highest)[i] = cell;
     }
@@ -536,11 +555,101 @@ int pack_particles(const Exec& exec, const Particles<Dim, Real, Device>& particl
       "vsb::particles_of_cell", Kokkos::RangePolicy<Exec>(exec, 0, static_cast<int>(count.extent(0))),
       KOKKOS_LAMBDA(int b) { count(b) = bins.offset(b + 1) - bins.offset(b); });
   auto& lanes = m.lanes;
+  lanes.data = {};
   lanes.particle_count = n;
-  detail::number_lanes(exec, m, basis.box, count);
-  detail::allocate_particle_columns(lanes, lanes.slot_count);
-  Kokkos::parallel_for("vsb::pack_particles", Kokkos::RangePolicy<Exec>(exec, 0, lanes.group_count),
-                       kernel::PackGroup<Dim, Real, Device>{lanes, particles, bins, m.grid});
+  number_lanes(exec, m, basis.box, count);
+  allocate_numbers(lanes, lanes.slot_count);
+  Kokkos::parallel_for("vsb::pack_numbers", Kokkos::RangePolicy<Exec>(exec, 0, lanes.group_count),
+                       kernel::PackNumbers<Dim, Real, Device>{lanes, bins});
+  exec.fence();
+  return -1;
+}
+
+/// The numbers that become a column of the lanes.
+template <int Dim, class Real, class Device>
+typename Particles<Dim, Real, Device>::Scalars column_of(const Particles<Dim, Real, Device>& particles,
+                                                         int column) {
+  using Columns = CellLanes<Dim, Real, Device>;
+  const auto of = [](const auto& fields, int c) { return Kokkos::subview(fields, Kokkos::ALL(), c); };
+  if (column >= Columns::state_column) return of(particles.material_state, column - Columns::state_column);
+  if (column >= Columns::stress_column) return of(particles.cauchy_stress, column - Columns::stress_column);
+  if (column == Columns::volume_column) return particles.volume;
+  if (column == Columns::mass_column) return particles.mass;
+  if (column >= Columns::velocity_column) return of(particles.velocity, column - Columns::velocity_column);
+  return of(particles.position, column);
+}
+
+template <class Exec, int Dim, class Real, class Device>
+void pack_column(const Exec& exec, const LaneMemory<Dim, Real, Device>& m,
+                 const typename Particles<Dim, Real, Device>::Scalars& of_particle, int column) {
+  Kokkos::parallel_for("vsb::pack_column", Kokkos::RangePolicy<Exec>(exec, 0, m.lanes.group_count),
+                       kernel::PackColumn<Dim, Real, Device>{m.lanes, of_particle, m.grid, column});
+}
+
+}  // namespace detail
+
+/// Packs particles that all lie in the grid. Returns -1, or the lowest number of one that does not.
+template <class Exec, int Dim, class Real, class Device>
+int pack_particles(const Exec& exec, const Particles<Dim, Real, Device>& particles,
+                   LaneMemory<Dim, Real, Device>& m) {
+  const int lost = detail::lay_out_particles(exec, particles, m);
+  if (lost >= 0) return lost;
+  detail::allocate_columns(m.lanes, m.lanes.slot_count);
+  for (int c = 0; c < m.lanes.columns(); ++c)
+    detail::pack_column(exec, m, detail::column_of(particles, c), c);
+  detail::allocate_leavers(exec, m);
+  exec.fence();
+  return -1;
+}
+
+/// Particles to be packed where they are: with room for slots that they do not fill and for so many numbers
+/// of material state each, which takes no memory before it is written to. Zero-filled.
+template <int Dim, class Real, class Device>
+ParticleBlock<Dim, Real, Device> allocate_particles_to_pack(int n, int state_size = 0) {
+  using Result = ParticleBlock<Dim, Real, Device>;
+  static_assert(Result::columns() == CellLanes<Dim, Real, Device>::state_column,
+                "the lanes have the block's");
+  const int rows = detail::with_room<Device>(n) + 64 * Lanes<Real>::width;
+  const typename Result::Block block(Kokkos::view_alloc("vsb::particles", Kokkos::WithoutInitializing),
+                                     static_cast<size_t>(padded_rows<Real>(rows)),
+                                     static_cast<size_t>(Result::columns() + state_size));
+  Kokkos::deep_copy(Kokkos::subview(block, std::make_pair(0, n), std::make_pair(0, Result::columns())),
+                    Real(0));
+  return Result(block, n);
+}
+
+/// The same for particles that are not needed any more: their memory becomes that of the lanes where it has
+/// room for them (allocate_particles_to_pack), so that there are never two copies of all. The block is empty
+/// afterwards, and views of its fields must not be used any more; where a particle lies outside the grid,
+/// nothing is changed.
+template <class Exec, int Dim, class Real, class Device>
+int pack_particles(const Exec& exec, ParticleBlock<Dim, Real, Device>&& block,
+                   LaneMemory<Dim, Real, Device>& m) {
+  const auto entries = [&] { return static_cast<size_t>(m.lanes.slot_count) * m.lanes.width; };
+  const int lost = detail::lay_out_particles(exec, block.particles, m);
+  if (lost >= 0) return lost;
+  const auto taken = std::move(block);
+  block = {};
+  const auto& particles = taken.particles;
+  auto& lanes = m.lanes;
+  const bool fits =
+      taken.block.extent(0) >= entries() && taken.block.extent(1) >= static_cast<size_t>(lanes.columns());
+  if (fits)
+    lanes.data = taken.block;
+  else
+    detail::allocate_columns(lanes, lanes.slot_count);
+  const auto n = static_cast<size_t>(particles.count());
+  const auto copy = fits ? detail::scratch(m.column_before, n) : Kokkos::View<Real*, Device>();
+  for (int c = 0; c < lanes.columns(); ++c) {
+    auto column = detail::column_of(particles, c);
+    if (fits) {
+      Kokkos::deep_copy(exec, copy, column);
+      column = copy;
+    }
+    detail::pack_column(exec, m, column, c);
+  }
+  exec.fence();
+  m.column_before = {};
   detail::allocate_leavers(exec, m);
   exec.fence();
   return -1;

@@ -103,6 +103,14 @@ int pack_lanes(const Exec& exec, const Particles<Dim, Real, Device>& particles,
   return lost;
 }
 
+/// The same for particles that are not needed any more (see pack_particles).
+template <class Exec, int Dim, class Real, class Device>
+int pack_lanes(const Exec& exec, ParticleBlock<Dim, Real, Device>&& block, LaneState<Dim, Real, Device>& s) {
+  const int lost = pack_particles(exec, std::move(block), s.memory);
+  if (lost < 0) mark_packed_lanes(exec, s);
+  return lost;
+}
+
 /// Where groups overflow often, they get slots to spare.
 template <int Dim, class Real, class Device>
 void make_more_room(LaneState<Dim, Real, Device>& s, const HomelessCount& homeless) {

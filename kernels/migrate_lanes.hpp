@@ -510,14 +510,11 @@ int repack_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, bool reach_
   Kokkos::parallel_for("vsb::find_sources", over_groups, place.find);
   Kokkos::parallel_for("vsb::place_homeless", once, place);
   const bool fits = static_cast<int>(before.data.extent(0)) >= entries;
-  if (fits) {
+  if (fits)
     lanes.data = before.data;
-    lanes.id = Ints(Kokkos::view_alloc("vsb::lane_ids", Kokkos::WithoutInitializing), before.data.extent(0));
-    lanes.held =
-        decltype(lanes.held)("vsb::lanes_held", before.data.extent(0) / static_cast<size_t>(lanes.width));
-  } else {
-    detail::allocate_particle_columns(lanes, lanes.slot_count + lanes.slot_count / 16);
-  }
+  else
+    detail::allocate_columns(lanes, lanes.slot_count);
+  detail::allocate_numbers(lanes, lanes.slot_count);
   const auto copy = detail::scratch(m.column_before, static_cast<size_t>(before.slot_count * before.width));
   for (int c = 0; c < lanes.columns(); ++c) {
     Kokkos::parallel_for("vsb::save_column", over_groups,

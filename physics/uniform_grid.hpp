@@ -45,9 +45,11 @@ struct UniformGrid : CellNumbering<Dim> {
   /// x in units of cells, from node 0.
   KOKKOS_FUNCTION Vector<Dim, Real> in_cells(const Vector<Dim, Real>& x) const {
     Vector<Dim, Real> q;
-    for (int i = 0; i < Dim; ++i) q[i] = (x[i] - lower[i]) * inverse_spacing[i];
+    for (int i = 0; i < Dim; ++i) q[i] = in_cells(x[i], i);
     return q;
   }
+  /// The same for one coordinate.
+  KOKKOS_FUNCTION Real in_cells(Real x, int axis) const { return (x - lower[axis]) * inverse_spacing[axis]; }
   /// The place with local coordinates xi in [0, 1]^Dim of a cell.
   KOKKOS_FUNCTION CellPoint<Dim, Real> map(const Vector<Dim, int>& cell, const Vector<Dim, Real>& xi) const {
     CellPoint<Dim, Real> place{{}, cell_volume()};
