@@ -98,8 +98,11 @@ Record measure_flows(const CostOptions& o) {
   const auto add = [&](const Record& part) {
     for (const auto& [name, value] : part.all()) all.set(name, value);
   };
-  for (const int direction : {0, 1, 2})
-    add(in_child(o.threads, [&](Record& r) { Measurements<Real>::flow(direction, 200, r); }));
+  for (const auto& [places, steps] : {std::pair(Places::lattice, 1000), std::pair(Places::jittered, 200)})
+    for (const int direction : {0, 1, 2})
+      add(in_child(o.threads, [&, places = places, steps = steps](Record& r) {
+        Measurements<Real>::flow(direction, places, steps, r);
+      }));
   add(in_child(o.threads, [&](Record& r) { Measurements<Real>::sparse(r); }));
   add(in_child(o.threads, [&](Record& r) { Measurements<Real>::materials(r); }));
   double bytes[2];
@@ -133,6 +136,8 @@ void print(const Row& row) {
       r["flops"], r["share of FMA %"], r["least bytes"], r["share of stream %"]);
   std::printf("  bytes per particle: state %.0f, resident while stepping %.0f, peak with set-up %.0f\n",
               r["state bytes"], r["stepping bytes"], r["peak bytes"]);
+  std::printf("  a step of one sweep takes %.3f times that of two; the program takes %s\n",
+              r["one sweep / two"], r["sweeps"] == 1 ? "one" : "two");
   print_extras(r, "extra by MOD",
                {"null", "pressure", "pressure, marked", "pressure, marked, summed anew", "tensor",
                 "tensor, marked", "affine", "affine, marked", "function", "function, marked"},

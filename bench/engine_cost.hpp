@@ -31,6 +31,7 @@ struct CostFields {
     affine.count = function.count = 1;
     affine.factor[0] = function.factor[0] = 1;
     affine.field[0] = hydrostatic;
+    affine.find_axis();
     RadialBlend<3, Real> blend;
     for (int i = 0; i < 3; ++i) {
       blend.center[i] = 0;
@@ -141,6 +142,23 @@ Lane<3, Real> make_measured_lanes(Column<3, Real>& column, const CostCase& what,
   return s;
 }
 
+/// Steps of one sweep against steps of two, in turns.
+template <class Real>
+void measure_sweeps(const Column<3, Real>& column, Lane<3, Real>& s, int rounds, Record& record) {
+  const bool chosen = s.memory.lanes.one_sweep();
+  const auto seconds = [&](bool one) {
+    set_sweeps(s.memory.lanes, one);
+    prepare_lane_step(Exec(), s, NoVirtualStress{});
+    return seconds_in_a_row({"", [&] { step(column, s, NoVirtualStress{}); }});
+  };
+  std::vector<double> ratio;
+  for (int round = 0; round < rounds; ++round) ratio.push_back(seconds(true) / seconds(false));
+  record.set("one sweep / two", median(ratio));
+  record.set("sweeps", chosen ? 1 : 2);
+  set_sweeps(s.memory.lanes, chosen);
+  prepare_lane_step(Exec(), s, NoVirtualStress{});
+}
+
 /// The row of a case in the table.
 template <class Real>
 void measure_engine(const CostCase& what, int axis, int repeats, Record& record) {
@@ -155,6 +173,7 @@ void measure_engine(const CostCase& what, int axis, int repeats, Record& record)
     add_extras(record, load == Load::end_face ? "end face" : "all faces", found, particles);
     base.insert(base.end(), found.base.begin(), found.base.end());
   }
+  measure_sweeps(column, s, rounds_for(what.size, repeats), record);
   record.set("base ns", 1e9 * median(base) / particles);
   record.set("base 10 % ns", 1e9 * quantile(base, 0.1) / particles);
 }

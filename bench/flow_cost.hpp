@@ -9,15 +9,17 @@
 namespace vsb::bench {
 
 /// A block of 22^3 cells, 8 particles each, that flies 0.1 cells per step along an axis, against one at rest;
-/// both in turns. The mean counts, since packing anew comes now and then.
+/// both in turns. The mean counts: particles on a lattice change their cells all at once, one step in five,
+/// and packing anew comes now and then.
 template <class Real>
-void measure_flow(int direction, int steps, Record& record) {
-  const std::string name = std::string("flow along ") + "xyz"[direction];
+void measure_flow(int direction, Places places, int steps, Record& record) {
+  const std::string name =
+      std::string(places == Places::lattice ? "flow along " : "jittered, along ") + "xyz"[direction];
   const Size size{"block", 22, 22, 2, steps / 10 + 4, steps / 10 + 4};
   auto velocity = Vector<3, double>::zero();
-  auto resting = make_moving_block<3, Real>(size, velocity);
+  auto resting = make_moving_block<3, Real>(size, velocity, places);
   velocity[direction] = 0.1;
-  auto moving = make_moving_block<3, Real>(size, velocity);
+  auto moving = make_moving_block<3, Real>(size, velocity, places);
   auto a = make_lanes(resting), b = make_lanes(moving);
   prepare_lane_step(Exec(), a, NoVirtualStress{});
   prepare_lane_step(Exec(), b, NoVirtualStress{});

@@ -59,8 +59,9 @@ void step(const Column<Dim, Real>& column, Lane<Dim, Real>& s, const Field& fiel
 
 /// The column without load and support, on its way by so many cells per step in all directions.
 template <int Dim, class Real>
-Column<Dim, Real> make_moving_block(const Size& size, const Vector<Dim, double>& cells_per_step) {
-  auto column = make_column<Dim, Real>(size, Load::off, 0);
+Column<Dim, Real> make_moving_block(const Size& size, const Vector<Dim, double>& cells_per_step,
+                                    Places places = Places::jittered) {
+  auto column = make_column<Dim, Real>(size, Load::off, 0, places);
   column.options.damping = 0;
   column.options.gravity = Vector<Dim, Real>::zero();
   const auto host = host_copy(column.block);

@@ -51,7 +51,7 @@ struct Packed {
     const auto& o = column.options;
     Kokkos::parallel_for("vsb::update_lane_nodes", over_chunks(),
                          kernel::UpdateLaneNodes<Dim, Real, Device>{
-                             {m.nodes}, o.gravity, m.grid.inverse_spacing, o.damping, o.dt});
+                             {m.nodes}, o.gravity, m.grid.inverse_spacing, o.damping, o.dt, false});
   }
   void run_remap() {
     const auto& m = lanes.memory;

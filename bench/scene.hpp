@@ -32,6 +32,9 @@ using Device = Exec::device_type;
 /// Where the virtual stress acts.
 enum class Load { off, end_face, free_faces };
 
+/// Where particles lie: on a lattice, or anywhere around its points.
+enum class Places { jittered, lattice };
+
 /// How fine the column is.
 struct Size {
   const char* name;
@@ -109,12 +112,14 @@ LinearBasis<Dim, Real> make_basis(const Size& size, int axis) {
 
 /// Fills the particles; `strain` is the size of the random state, the strain of its stress.
 template <int Dim, class Real>
-void fill_particles(const Column<Dim, Real>& scene, double strain, double youngs_modulus, double wave_speed) {
+void fill_particles(const Column<Dim, Real>& scene, Places places, double strain, double youngs_modulus,
+                    double wave_speed) {
   const auto host = host_copy(scene.block);
   const auto& p = host.particles;
   const int across = scene.size.cells_across * scene.size.per_direction,
             along = scene.size.cells_along * scene.size.per_direction;
-  const double distance = scene.spacing() / scene.size.per_direction, jitter = 0.3 * distance;
+  const double distance = scene.spacing() / scene.size.per_direction,
+               jitter = places == Places::jittered ? 0.3 * distance : 0;
   double volume = 1;
   for (int i = 0; i < Dim; ++i) volume *= distance;
   Noise noise;
@@ -161,7 +166,8 @@ void apply_load(Scene<Dim, Real>& scene, Load load) {
 
 /// The column at rest but for noise.
 template <int Dim, class Real>
-Column<Dim, Real> make_column(const Size& size, Load load, int axis = Dim - 1) {
+Column<Dim, Real> make_column(const Size& size, Load load, int axis = Dim - 1,
+                              Places places = Places::jittered) {
   const double E = 1e6, nu = 0.3;
   Column<Dim, Real> s;
   s.axis = axis;
@@ -178,7 +184,7 @@ Column<Dim, Real> make_column(const Size& size, Load load, int axis = Dim - 1) {
   s.options.gravity[s.axis] = static_cast<Real>(-strain * E / (s.density * s.length));
   s.virtual_stress.stress[0] = pressure_stress<Dim>(static_cast<Real>(s.pressure));
   s.virtual_stress.count = 1;
-  fill_particles(s, strain, E, math::sqrt(M / s.density));
+  fill_particles(s, places, strain, E, math::sqrt(M / s.density));
   return s;
 }
 

@@ -467,9 +467,14 @@ void allocate_leavers(const Exec& exec, LaneMemory<Dim, Real, Device>& m) {
         decltype(l.data)(Kokkos::view_alloc("vsb::leavers", Kokkos::WithoutInitializing), slots, numbers);
     l.head = decltype(l.head)(Kokkos::view_alloc("vsb::leaver_heads", Kokkos::WithoutInitializing), slots);
   }
-  l.count = decltype(l.count)("vsb::leaver_count", static_cast<size_t>(lanes.layers()));
-  l.lost = decltype(l.lost)("vsb::leavers_lost", static_cast<size_t>(lanes.layers()));
-  l.first = decltype(l.first)("vsb::leaver_first", static_cast<size_t>(lanes.layers()));
+  const auto per_layer = [&](const std::string& name) {
+    return decltype(l.first)(name, static_cast<size_t>(lanes.layers()));
+  };
+  l.count = per_layer("vsb::leaver_count");
+  l.lost = per_layer("vsb::leavers_lost");
+  l.many = per_layer("vsb::leavers_many");
+  l.unsummed = per_layer("vsb::unsummed_layers");
+  l.first = per_layer("vsb::leaver_first");
   const auto first = l.first;
   Kokkos::parallel_for(
       "vsb::first_leavers", Kokkos::RangePolicy<Exec>(exec, 0, lanes.layers()), KOKKOS_LAMBDA(int k) {

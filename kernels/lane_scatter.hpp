@@ -36,11 +36,10 @@ class LayerSums {
   static constexpr int rows = LaneGroup<Dim>::corner_rows;
 
  public:
-  /// Begins with zero, or adds to what is there.
-  KOKKOS_FUNCTION LayerSums(const CellLanes<Dim, Real, Device>& lanes,
-                            const LaneNodes<Dim, Real, Device>& nodes, int layer, bool anew = true)
-      : nodes_(nodes) {
-    if (!anew) return;
+  KOKKOS_FUNCTION explicit LayerSums(const LaneNodes<Dim, Real, Device>& nodes) : nodes_(nodes) {}
+  /// Sets the sums of a layer to zero; kernels/update_lane_nodes.hpp leaves them so.
+  KOKKOS_FUNCTION void begin_anew(const CellLanes<Dim, Real, Device>& lanes, int layer) const {
+    const auto& nodes = nodes_;
     const Ints& plane = lanes.plane_first;
     for (int c = First; c < First + Count; ++c) {
       zero(nodes.at(nodes.lower_sums + c, 0), plane(layer), plane(layer + 1));

@@ -34,6 +34,17 @@ struct LaneState {
   }
 };
 
+namespace kernel {
+
+/// Layers of one set or another.
+template <class Device>
+struct JoinLayers {
+  Kokkos::View<int*, Device> layers, others;
+  KOKKOS_FUNCTION void operator()(int layer) const { layers(layer) |= others(layer); }
+};
+
+}  // namespace kernel
+
 namespace detail {
 
 /// Calls work(true or false as a type): whether cells are cubes.
@@ -143,8 +154,12 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
   const Kokkos::RangePolicy<Exec> over_chunks(exec, 0, m.lanes.node_count / m.lanes.width);
 
   Kokkos::parallel_for("vsb::update_lane_nodes", over_chunks,
-                       kernel::UpdateLaneNodes<Dim, Real, Device>{
-                           {m.nodes}, options.gravity, m.grid.inverse_spacing, options.damping, options.dt});
+                       kernel::UpdateLaneNodes<Dim, Real, Device>{{m.nodes},
+                                                                  options.gravity,
+                                                                  m.grid.inverse_spacing,
+                                                                  options.damping,
+                                                                  options.dt,
+                                                                  m.lanes.one_sweep()});
   if (m.lanes.one_sweep())
     Kokkos::parallel_for("vsb::remap_lanes", detail::over_layers(exec, s),
                          kernel::RemapLanes<Dim, Real, Device>{m.lanes, m.nodes});
@@ -154,9 +169,7 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
   Kokkos::parallel_for(
       "vsb::remap_lane_nodes", over_chunks,
       kernel::RemapLaneNodes<Dim, Real, Device>{{m.nodes}, options.dt * m.grid.inverse_spacing[0]});
-  // Where many are about to leave, the nodes' sums wait for them: another sweep costs less than adding them
-  // one by one.
-  bool summed = s.steps_of_flow < 2;
+  const bool and_sum = s.steps_of_flow < 2;
   detail::with_cubic(s, [&](auto cubic) {
     Kokkos::parallel_for(
         "vsb::move_lanes", detail::over_layers(exec, s),
@@ -164,20 +177,19 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
             detail::loaded_lanes(s),
             {m.lanes, m.nodes, m.grid, material, volume, m.leavers},
             next_virtual_stress,
-            summed});
+            and_sum});
   });
   move_surface_points(exec, m, s.surface);
   ++s.steps_since_repacked;
   const int leavers = count_leavers(exec, m);
   s.steps_of_flow = leavers > m.lanes.particle_count / 50 ? math::min(s.steps_of_flow + 1, 2) : 0;
   if (leavers == 0) {
-    if (!summed) detail::sum_lanes(exec, s, next_virtual_stress);
+    if (!and_sum) detail::sum_lanes(exec, s, next_virtual_stress);
     return -1;
   }
-  summed = summed && leavers < m.lanes.particle_count / 16;
   // Holes cost as much as particles; to close them costs as much as a particle's way.
   const bool closing = s.steps_since_repacked % 8 == 0;
-  const auto homeless = take_in_leavers(exec, m, next_virtual_stress, s.boundary.tractions, summed, closing);
+  const auto homeless = take_in_leavers(exec, m, next_virtual_stress, s.boundary.tractions, closing);
   if (homeless.any()) {
     make_more_room(s, homeless);
     // Where particles flow, there are groups where the body is about to be.
@@ -190,10 +202,12 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
   }
   if (update_occupied(exec, m.lanes, s.boundary)) s.unmarked = true;
   const bool marked = detail::bring_marks_up_to_date<Field>(exec, s);
-  if (!summed)
-    detail::sum_lanes(exec, s, next_virtual_stress);
-  else if (marked && Field::loaded)
-    detail::sum_lanes(exec, s, next_virtual_stress, s.boundary.stale);
+  const bool reloaded = marked && Field::loaded;
+  if (reloaded)
+    Kokkos::parallel_for("vsb::join_layers", Kokkos::RangePolicy<Exec>(exec, 0, m.lanes.layers()),
+                         kernel::JoinLayers<Device>{m.leavers.unsummed, s.boundary.stale});
+  if (reloaded || homeless.unsummed_layers > 0)
+    detail::sum_lanes(exec, s, next_virtual_stress, m.leavers.unsummed);
   return -1;
 }
 

@@ -34,7 +34,8 @@ struct SumLanes {
 
   KOKKOS_FUNCTION void operator()(int layer) const {
     if (only.size() > 0 && only(layer) == 0) return;
-    StepSums<Dim, Real, Device> sums(on.lanes, nodes, layer);
+    StepSums<Dim, Real, Device> sums(nodes);
+    sums.begin_anew(on.lanes, layer);
     for (int g = on.lanes.layer_first(layer); g < on.lanes.layer_first(layer + 1); ++g) {
       const auto& group = on.lanes.groups(g);
       if (group.slots == 0) continue;
@@ -72,7 +73,7 @@ struct AccelerateLanes {
   LaneNodes<Dim, Real, Device> nodes;
 
   KOKKOS_FUNCTION void operator()(int layer) const {
-    Momentum sums(lanes, nodes, layer);
+    Momentum sums(nodes);
     for (int g = lanes.layer_first(layer); g < lanes.layer_first(layer + 1); ++g) {
       const auto& group = lanes.groups(g);
       if (group.slots == 0) continue;
@@ -99,7 +100,7 @@ struct RemapLanes {
   LaneNodes<Dim, Real, Device> nodes;
 
   KOKKOS_FUNCTION void operator()(int layer) const {
-    Momentum sums(lanes, nodes, layer, false);
+    Momentum sums(nodes);
     for (int g = lanes.layer_first(layer); g < lanes.layer_first(layer + 1); ++g) {
       const auto& group = lanes.groups(g);
       if (group.slots == 0) continue;
@@ -291,7 +292,8 @@ struct MoveGroup {
   }
 };
 
-/// Sweep C, and A of the next step.
+/// Sweep C, and A of the next step. Where many particles leave their cells, another sweep after they arrived
+/// costs less than to add them to the sums one by one: a layer that finds so many does not go on with A.
 template <bool Cubic, class Field, class Material, class Volume, int Dim, class Real, class Device>
 struct MoveLanes {
   LoadedLanes<Dim, Real, Device> on;
@@ -300,21 +302,28 @@ struct MoveLanes {
   bool and_sum;  ///< whether A follows at once
 
   KOKKOS_FUNCTION void operator()(int layer) const {
-    move.leavers.count(layer) = move.leavers.lost(layer) = 0;
-    if (!and_sum) {
-      for (int g = on.lanes.layer_first(layer); g < on.lanes.layer_first(layer + 1); ++g)
-        accelerate_and_move(on.lanes.groups(g), layer);
-      return;
+    auto& lost = move.leavers.lost(layer);
+    move.leavers.count(layer) = lost = 0;
+    int g = on.lanes.layer_first(layer);
+    const int end = on.lanes.layer_first(layer + 1), few = and_sum ? few_of(g, end) : -1;
+    if (and_sum) {
+      StepSums<Dim, Real, Device> sums(move.nodes);
+      for (; g < end && lost <= few; ++g) {
+        const auto& group = on.lanes.groups(g);
+        if (group.slots == 0) continue;
+        accelerate_and_move(group, layer);
+        sums.begin(group);
+        sum_group_with<Cubic>(on, group, virtual_stress, sums);
+      }
+      sums.end();
     }
-    StepSums<Dim, Real, Device> sums(on.lanes, move.nodes, layer);
-    for (int g = on.lanes.layer_first(layer); g < on.lanes.layer_first(layer + 1); ++g) {
-      const auto& group = on.lanes.groups(g);
-      if (group.slots == 0) continue;
-      accelerate_and_move(group, layer);
-      sums.begin(group);
-      sum_group_with<Cubic>(on, group, virtual_stress, sums);
-    }
-    sums.end();
+    for (; g < end; ++g) accelerate_and_move(on.lanes.groups(g), layer);
+    move.leavers.many(layer) = lost > few;
+  }
+  KOKKOS_FUNCTION int few_of(int g, int end) const {
+    int slots = 0;
+    for (; g < end; ++g) slots += on.lanes.groups(g).slots;
+    return slots * on.lanes.width / 16;
   }
   KOKKOS_FORCEINLINE_FUNCTION void accelerate_and_move(const LaneGroup<Dim>& group, int layer) const {
     if (on.lanes.one_sweep()) accelerate_apart(group);

@@ -83,6 +83,13 @@ KOKKOS_FORCEINLINE_FUNCTION void add_uniform(const SymmetricTensor<Dim, Real>& b
   });
 }
 
+/// The lower corner of the cell in lane 0 of a group, m.
+template <int Dim, class Real, class Device>
+KOKKOS_FORCEINLINE_FUNCTION Vector<Dim, Real> lower_corner(const LoadedLanes<Dim, Real, Device>& on,
+                                                           const LaneGroup<Dim>& group) {
+  return on.grid.map(on.lanes.cell(group, 0), Vector<Dim, Real>::zero()).x;
+}
+
 /// sum_p V_p (sbar(x_p) . grad N_a + fbar N_a) of an affine field from the second moments of the volume,
 /// where bits are set.
 template <int Dim, class P, class Real, class Device>
@@ -92,10 +99,8 @@ KOKKOS_FORCEINLINE_FUNCTION void add_affine(const LoadedLanes<Dim, Real, Device>
                                             CellPolynomial<Dim, P> (&f)[Dim]) {
   const auto& grid = on.grid;
   // sbar at the lower corner of every lane's cell.
-  const auto corner = grid.map(on.lanes.cell(group, 0), Vector<Dim, Real>::zero()).x;
-  P along_x;
-  for (int l = 0; l < P::width; ++l) along_x.set(l, static_cast<Real>(l) * grid.spacing[0]);
-  const auto first = bar.at(corner).stress;
+  const auto first = bar.at(lower_corner(on, group)).stress;
+  const P along_x = lane_numbers<P>() * P(grid.spacing[0]);
   static_for<Dim>([&](auto a) VSB_UNROLLED {
     Vector<Dim, P> b;
     Matrix<Dim, P> d;
@@ -112,6 +117,63 @@ KOKKOS_FORCEINLINE_FUNCTION void add_affine(const LoadedLanes<Dim, Real, Device>
     static_for<t.size>([&](auto k) VSB_UNROLLED { t[k] += P(divergence) * volume.m[k]; });
     nodes_from_moments<Dim>(t);
     add_where<Dim>(bits, t, f[a]);
+  });
+}
+
+/// The same of fields that vary along direction j alone, and are without shear.
+template <int j, class Field, int Dim, class P, class Real, class Device>
+KOKKOS_FORCEINLINE_FUNCTION void add_affine_along(const LoadedLanes<Dim, Real, Device>& on,
+                                                  const LaneGroup<Dim>& group, const Field& field,
+                                                  TractionMask tractions, const SecondMoments<Dim, P>& volume,
+                                                  const std::uint64_t* bits,
+                                                  CellPolynomial<Dim, P> (&f)[Dim]) {
+  const auto& grid = on.grid;
+  const Real x = lower_corner(on, group)[j];
+  static_for<Dim>([&](auto a) VSB_UNROLLED {
+    Real value, slope;
+    field.sum_along(tractions, j, a, value, slope);
+    P b((value + slope * x) * grid.inverse_spacing[a]);
+    const P d(slope * grid.spacing[j] * grid.inverse_spacing[a]);
+    if constexpr (j == 0) b += d * lane_numbers<P>();
+    auto t = gradient_moments_along<a, j, Dim>(b, d, volume);
+    if constexpr (a == j) static_for<t.size>([&](auto k) VSB_UNROLLED { t[k] += P(slope) * volume.m[k]; });
+    nodes_from_moments<Dim>(t);
+    add_where<Dim>(bits, t, f[a]);
+  });
+}
+
+/// Calls add(moments, w, xi) for every slot of a group with its volumes.
+template <int Dim, class Real, class Device, class Add>
+KOKKOS_FORCEINLINE_FUNCTION SecondMoments<Dim, typename Lanes<Real>::Pack> second_moments(
+    const CellLanes<Dim, Real, Device>& lanes, const LaneGroup<Dim>& group, const Add& add) {
+  using P = typename Lanes<Real>::Pack;
+  SecondMoments<Dim, P> volume;
+  volume.set_zero();
+  for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width)
+    add(volume, lanes.load(lanes.volume_column, entry), lanes.load_xi(entry));
+  return volume;
+}
+
+/// The affine fields of all nodes of a group.
+template <class Field, int Dim, class P, class Real, class Device>
+KOKKOS_FORCEINLINE_FUNCTION void add_affine_fields(const LoadedLanes<Dim, Real, Device>& on,
+                                                   const LaneGroup<Dim>& group, const Field& field,
+                                                   CellPolynomial<Dim, P> (&f)[Dim]) {
+  static_for<Dim>([&](auto j) VSB_UNROLLED {
+    constexpr int along = j;
+    if (field.axis != along) return;
+    const auto volume = second_moments(on.lanes, group, [](auto& m, const P& V, const auto& xi) VSB_UNROLLED {
+      m.template add_along<along>(V, xi);
+    });
+    for_each_mask(on, group, [&](TractionMask tractions, const std::uint64_t* bits) {
+      add_affine_along<along>(on, group, field, tractions, volume, bits, f);
+    });
+  });
+  if (field.axis >= 0) return;
+  const auto volume =
+      second_moments(on.lanes, group, [](auto& m, const P& V, const auto& xi) VSB_UNROLLED { m.add(V, xi); });
+  for_each_mask(on, group, [&](TractionMask tractions, const std::uint64_t* bits) {
+    add_affine(on, group, field.sum(tractions), volume, bits, f);
   });
 }
 
@@ -194,13 +256,7 @@ template <bool Cubic, class Field, int Dim, class Real, class Device>
                   bits, f);
     });
   } else if constexpr (Field::affine) {
-    SecondMoments<Dim, P> volume;
-    volume.set_zero();
-    for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width)
-      volume.add(lanes.load(lanes.volume_column, entry), lanes.load_xi(entry));
-    for_each_mask(on, group, [&](TractionMask tractions, const std::uint64_t* bits) {
-      add_affine(on, group, field.sum(tractions), volume, bits, f);
-    });
+    add_affine_fields(on, group, field, f);
   } else {
     for_each_mask(on, group, [&](TractionMask tractions, const std::uint64_t* bits) {
       CellPolynomial<Dim, P> t[Dim];

@@ -22,7 +22,8 @@ struct Homeless {
   LaneMask without_group, without_slot;
 };
 
-/// One layer: takes in the leavers that go there. Counts those without a place, each once.
+/// One layer: takes in the leavers that go there. Counts those without a place, each once, and layers whose
+/// sums are to be made anew.
 template <int Dim, class Real, class Device, class Field>
 struct TakeInLeavers {
   static constexpr int width = Lanes<Real>::width;
@@ -34,7 +35,6 @@ struct TakeInLeavers {
   UniformGrid<Dim, Real> grid;
   Field virtual_stress;
   BoundaryNodes<Device> tractions;  ///< [node of the lanes]
-  bool scatter;                     ///< whether to add to the nodes
   bool closing;                     ///< whether to close ranks
 
   KOKKOS_FUNCTION int layer_of(const Vector<Dim, int>& cell) const {
@@ -49,19 +49,25 @@ struct TakeInLeavers {
     }
     return true;
   }
-  KOKKOS_FUNCTION void operator()(int layer, int& without_group, int& without_slot) const {
+  KOKKOS_FUNCTION void operator()(int layer, int& without_group, int& without_slot, int& unsummed) const {
+    const int lowest_layer = math::max(layer - 1, 0),
+              highest_layer = math::min(layer + 1, lanes.layers() - 1);
+    int many = 0;
+    for (int from = lowest_layer; from <= highest_layer; ++from) many |= leavers.many(from);
+    leavers.unsummed(layer) = many;
+    unsummed += many;
     for (int g = lanes.layer_first(layer); g < lanes.layer_first(layer + 1); ++g) {
       auto& group = lanes.groups(g);
       while (group.slots > 0 && lanes.held(group.first + group.slots - 1) == 0) --group.slots;
     }
-    for (int from = math::max(layer - 1, 0); from <= math::min(layer + 1, lanes.layers() - 1); ++from)
+    for (int from = lowest_layer; from <= highest_layer; ++from)
       for (int n = leavers.first(from); n < leavers.first(from) + leavers.count(from); ++n) {
         auto& head = leavers.head(n);
         const int way = layer - from + 1;
         Homeless homeless{from == layer ? head.far : 0, 0};
         for (LaneMask left = head.to[way]; left != 0;) {
           const LaneMask together = with_the_first(head, left);
-          take_in(n, head, together, homeless);
+          take_in(n, head, together, many == 0, homeless);
           left &= ~together;
         }
         head.homeless[way] = homeless.without_group | homeless.without_slot;
@@ -117,8 +123,9 @@ struct TakeInLeavers {
     while (!(lanes >> l & 1)) ++l;
     return l;
   }
-  /// Particles of these lanes of copy n, which go the same way.
-  KOKKOS_FUNCTION void take_in(int n, const Head& head, LaneMask from, Homeless& homeless) const {
+  /// Particles of these lanes of copy n, which go the same way; `scatter`: whether to add to the nodes.
+  KOKKOS_FUNCTION void take_in(int n, const Head& head, LaneMask from, bool scatter,
+                               Homeless& homeless) const {
     constexpr LaneMask all = ~LaneMask(0) >> (32 - width);
     for (int l = 0; l < width; ++l)
       if ((from >> l & 1) && !within(head.cell[l])) homeless.without_group |= LaneMask(1) << l;
@@ -130,20 +137,21 @@ struct TakeInLeavers {
     int row = layer_of(cell) * lanes.rows_per_layer();
     if constexpr (Dim == 3) row += cell[1] - lanes.box.first[1];
     if (along == 0) {
-      put<0>(n, head, row, head.x, from, homeless);
+      put<0>(n, head, row, head.x, from, scatter, homeless);
     } else if (along == 1) {
-      put<1>(n, head, row, head.x, from << 1 & all, homeless);
-      put<1>(n, head, row, head.x + 1, from >> (width - 1), homeless);
+      put<1>(n, head, row, head.x, from << 1 & all, scatter, homeless);
+      put<1>(n, head, row, head.x + 1, from >> (width - 1), scatter, homeless);
     } else if (along == -1) {
-      put<-1>(n, head, row, head.x, from >> 1, homeless);
-      put<-1>(n, head, row, head.x - 1, from << (width - 1) & all, homeless);
+      put<-1>(n, head, row, head.x, from >> 1, scatter, homeless);
+      put<-1>(n, head, row, head.x - 1, from << (width - 1) & all, scatter, homeless);
     } else {
       homeless.without_group |= from;
     }
   }
   /// Puts particles of copy n, `Along` lanes on, into lanes of a group.
   template <int Along>
-  KOKKOS_FUNCTION void put(int n, const Head& head, int row, int x, LaneMask into, Homeless& homeless) const {
+  KOKKOS_FUNCTION void put(int n, const Head& head, int row, int x, LaneMask into, bool scatter,
+                           Homeless& homeless) const {
     if (into == 0) return;
     const int g = lanes.group_of(row, x);
     if (g < 0) {
@@ -437,24 +445,25 @@ int count_leavers(const Exec& exec, const LaneMemory<Dim, Real, Device>& m) {
   return count;
 }
 
-/// How many particles found no place where they went: for want of a group there, or of a slot in it.
+/// How many particles found no place where they went, for want of a group there, or of a slot in it; and how
+/// many layers are without sums.
 struct HomelessCount {
-  int without_group = 0, without_slot = 0;
+  int without_group = 0, without_slot = 0, unsummed_layers = 0;
   bool any() const { return without_group + without_slot > 0; }
 };
 
-/// Brings the leavers to their cells and, if asked to, adds them to the nodes (scatter) and empties last
-/// slots into holes (closing). Where some found no place, repack_lanes must follow. Waits for the device.
+/// Brings the leavers to their cells, adds them to the nodes where there are not too many of them, and, if
+/// asked to, empties last slots into holes (closing). Where some found no place, repack_lanes must follow.
+/// Waits for the device.
 template <class Exec, class Field, int Dim, class Real, class Device>
 HomelessCount take_in_leavers(const Exec& exec, const LaneMemory<Dim, Real, Device>& m,
                               const Field& virtual_stress, const BoundaryNodes<Device>& tractions,
-                              bool scatter, bool closing) {
+                              bool closing) {
   HomelessCount homeless;
-  Kokkos::parallel_reduce(
-      "vsb::take_in_leavers", Kokkos::RangePolicy<Exec>(exec, 0, m.lanes.layers()),
-      kernel::TakeInLeavers<Dim, Real, Device, Field>{m.lanes, m.nodes, m.leavers, m.grid, virtual_stress,
-                                                      tractions, scatter, closing},
-      homeless.without_group, homeless.without_slot);
+  Kokkos::parallel_reduce("vsb::take_in_leavers", Kokkos::RangePolicy<Exec>(exec, 0, m.lanes.layers()),
+                          kernel::TakeInLeavers<Dim, Real, Device, Field>{m.lanes, m.nodes, m.leavers, m.grid,
+                                                                          virtual_stress, tractions, closing},
+                          homeless.without_group, homeless.without_slot, homeless.unsummed_layers);
   exec.fence();
   return homeless;
 }

@@ -160,15 +160,21 @@ struct SecondMoments {
   }
   KOKKOS_FORCEINLINE_FUNCTION void add(T w, const Vector<Dim, T>& xi) {
     add_moments<Dim>(m, w, xi);
-    if constexpr (Dim > 1) {
-      static_for<Dim>([&](auto j) VSB_UNROLLED {
-        const T wjj = w * xi[j] * xi[j];
-        square[j][0] += wjj;
-        static_for<Dim>([&](auto i) VSB_UNROLLED {
-          if constexpr (Dim > 2 && i != j) square[j][1 << i] += wjj * xi[i];
-        });
-      });
-    }
+    if constexpr (Dim > 1) static_for<Dim>([&](auto j) VSB_UNROLLED { add_square<j>(w, xi); });
+  }
+  /// As far as a weight needs it that varies along direction j alone.
+  template <int j>
+  KOKKOS_FORCEINLINE_FUNCTION void add_along(T w, const Vector<Dim, T>& xi) {
+    add_moments<Dim>(m, w, xi);
+    if constexpr (Dim > 1) add_square<j>(w, xi);
+  }
+  template <int j>
+  KOKKOS_FORCEINLINE_FUNCTION void add_square(T w, const Vector<Dim, T>& xi) {
+    const T wjj = w * xi[j] * xi[j];
+    square[j][0] += wjj;
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
+      if constexpr (Dim > 2 && i != j) square[j][1 << i] += wjj * xi[i];
+    });
   }
   /// The moment of xi_j q_k.
   template <int j, int k>
@@ -195,6 +201,22 @@ KOKKOS_FORCEINLINE_FUNCTION CellPolynomial<Dim, T> gradient_moments(const Vector
         static_for<Dim>([&](auto j) VSB_UNROLLED { g[k] += d(i, j) * w.template times<j, rest>(); });
       }
     });
+  });
+  return g;
+}
+
+/// The same of s along direction i that varies along j, s_i = b + d xi_j, from what add_along<j> added up.
+template <int i, int j, int Dim, class T>
+KOKKOS_FORCEINLINE_FUNCTION CellPolynomial<Dim, T> gradient_moments_along(T b, T d,
+                                                                          const SecondMoments<Dim, T>& w) {
+  CellPolynomial<Dim, T> g;
+  static_for<(1 << Dim)>([&](auto k) VSB_UNROLLED {
+    if constexpr (k >> i & 1) {
+      constexpr int rest = k ^ (1 << i);
+      g[k] = b * w.m[rest] + d * w.template times<j, rest>();
+    } else {
+      g[k] = T(0);
+    }
   });
   return g;
 }

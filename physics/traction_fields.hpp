@@ -113,6 +113,37 @@ struct AffineVirtualStress : ActsOnParticles {
   Real factor[capacity];  ///< on the field of traction k, at this time
   int count = 0;
 
+  int axis = -1;  ///< the direction along which all of them vary, and without shear; -1: they may do anything
+
+  /// Sets `axis` where the fields are so, as the pressure of water and of soil at rest is.
+  void find_axis() {
+    int found = 0, axes = 0;
+    bool shear = false;
+    for (int j = 0; j < Dim; ++j) {
+      bool varies = false;
+      for (int k = 0; k < count; ++k) {
+        const auto& g = field[k].gradient[j];
+        for (int c = 0; c < g.size; ++c) {
+          varies = varies || g[c] != Real(0);
+          shear = shear || (c >= 3 && (g[c] != Real(0) || field[k].value[c] != Real(0)));
+        }
+      }
+      if (!varies) continue;
+      found = j;
+      ++axes;
+    }
+    axis = shear || axes > 1 ? -1 : found;
+  }
+  /// Normal stress a of the sum where x_j = 0, and its gradient along j; for j = axis.
+  KOKKOS_FORCEINLINE_FUNCTION void sum_along(TractionMask mask, int j, int a, Real& value,
+                                             Real& slope) const {
+    value = slope = Real(0);
+    for (int k = 0; k < count; ++k) {
+      if (!(mask >> k & 1u)) continue;
+      value += factor[k] * field[k].value[a];
+      slope += factor[k] * field[k].gradient[j][a];
+    }
+  }
   KOKKOS_FUNCTION AffineStress<Dim, Real> sum(TractionMask mask) const {
     AffineStress<Dim, Real> total;
     total.value = SymmetricTensor<Dim, Real>::zero();

@@ -223,6 +223,9 @@ struct Leavers {
   Kokkos::View<int*, Device> first;                        ///< [layer]: first copy of the list of the layer
   Kokkos::View<int*, Device> count;                        ///< [layer]: copies
   Kokkos::View<int*, Device> lost;                         ///< [layer]: particles in them
+  Kokkos::View<int*, Device> many;      ///< [layer]: 1 where so many left that the sums of the layers around
+                                        ///< are to be made anew
+  Kokkos::View<int*, Device> unsummed;  ///< [layer]: 1 where they have not been
 
   /// Calls work(copy, lane) for all particles without a place, in order.
   template <class Work>

@@ -186,6 +186,21 @@ KOKKOS_FORCEINLINE_FUNCTION Pack<T, W> rotated(Pack<T, W> p) {
   return detail::rotated<By>(p, std::make_integer_sequence<int, W>{});
 }
 
+namespace detail {
+template <class P, int... L>
+KOKKOS_FORCEINLINE_FUNCTION P lane_numbers(std::integer_sequence<int, L...>) {
+  P p(0);
+  (p.set(L, L), ...);
+  return p;
+}
+}  // namespace detail
+
+/// 0, 1, 2, ...
+template <class P>
+KOKKOS_FORCEINLINE_FUNCTION P lane_numbers() {
+  return detail::lane_numbers<P>(std::make_integer_sequence<int, P::width>{});
+}
+
 /// p in the lanes whose bit is set, zero in the others.
 template <class T, int W>
 KOKKOS_FORCEINLINE_FUNCTION Pack<T, W> keep_lanes(std::uint64_t bits, Pack<T, W> p) {

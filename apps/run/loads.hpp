@@ -137,6 +137,7 @@ class Loads {
       affine.field[k] = fields.field[k].as_affine();
       affine.factor[k] = fields.factor[k];
     }
+    affine.find_axis();
     work(affine);
   }
 

@@ -192,3 +192,35 @@ TEMPLATE_TEST_CASE_SIG("a field that varies linearly, from second moments", "",
       CHECK(std::abs(lane(sum[a], l) - expected[l][a]) < 500 * epsilon);
     }
 }
+
+TEMPLATE_TEST_CASE_SIG("a field along one direction that varies along one, from as many moments as it needs",
+                       "", ((int Dim, typename T), Dim, T), (1, double), (2, double), (3, double),
+                       (2, (Pack<double, 4>)), (3, (Pack<float, 8>))) {
+  const double epsilon = std::numeric_limits<typename Traits<T>::real>::epsilon();
+  static_for<Dim>([&](auto i) {
+    static_for<Dim>([&](auto j) {
+      Random random(6);
+      const T b = Traits<T>::draw(random, -1, 1), d = Traits<T>::draw(random, -1, 1);
+      SecondMoments<Dim, T> moments;
+      moments.set_zero();
+      double expected[8][1 << Dim] = {};
+      for (int p = 0; p < 20; ++p) {
+        const auto xi = draw_vector<Dim, T>(random, 0, 1);
+        const T w = Traits<T>::draw(random, 0.5, 1.5);
+        moments.template add_along<j>(w, xi);
+        for (int l = 0; l < Traits<T>::width; ++l) {
+          const Basis<Dim> at(xi, l);
+          for (int a = 0; a < 1 << Dim; ++a)
+            expected[l][a] += lane(w, l) * (lane(b, l) + lane(d, l) * lane(xi[j], l)) * at.dN[a][i];
+        }
+      }
+      auto sum = gradient_moments_along<i, j, Dim>(b, d, moments);
+      nodes_from_moments<Dim>(sum);
+      for (int l = 0; l < Traits<T>::width; ++l)
+        for (int a = 0; a < 1 << Dim; ++a) {
+          CAPTURE(int(i), int(j), l, a);
+          CHECK(std::abs(lane(sum[a], l) - expected[l][a]) < 500 * epsilon);
+        }
+    });
+  });
+}
