@@ -31,33 +31,59 @@ struct Balance {
 
 namespace kernel {
 
+/// What a node adds to the sums: squares of the unbalanced and of the internal force, kinetic energy, net
+/// force, net torque.
+template <int Dim>
+using BalanceSums = Vector<3 + Dim + 3, double>;
+
+/// Adds the node at x with mass m, momentum p, force f, and force g without tractions.
+template <int Dim, class Real>
+KOKKOS_FUNCTION void add_node_balance(const Vector<Dim, Real>& place, ComponentMask fixed_components,
+                                      double m, const Vector<Dim, double>& momentum,
+                                      const Vector<Dim, double>& force, const Vector<Dim, double>& bare,
+                                      BalanceSums<Dim>& sum) {
+  Vector<3, double> traction = Vector<3, double>::zero(), x = traction;
+  for (int i = 0; i < Dim; ++i) {
+    const double f = force[i], g = bare[i], p = momentum[i];
+    const bool fixed = fixed_components >> i & 1;
+    if (!fixed && m > 0) sum[0] += f * f;
+    sum[1] += g * g;
+    if (!fixed && m > 0) sum[2] += 0.5 * p * p / m;
+    if (!fixed) traction[i] = f - g;
+    x[i] = place[i];
+    sum[3 + i] += traction[i];
+  }
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    sum[3 + Dim + i] += x[j] * traction[k] - x[k] * traction[j];
+  }
+}
+
 template <class Grid, int Dim, class Real, class Device>
 struct NodeBalance {
-  static constexpr int size = 3 + Dim + 3;
   Grid grid;
   Nodes<Dim, Real, Device> nodes;                  ///< sums with virtual stress
   typename Nodes<Dim, Real, Device>::Fields bare;  ///< sums without
 
-  KOKKOS_FUNCTION void operator()(int I, Vector<size, double>& sum) const {
-    const double m = nodes.mass(I);
-    Vector<3, double> traction = Vector<3, double>::zero(), x = traction;
-    const auto place = grid.node_position(I);
+  KOKKOS_FUNCTION void operator()(int I, BalanceSums<Dim>& sum) const {
+    Vector<Dim, double> p, f, g;
     for (int i = 0; i < Dim; ++i) {
-      const double f = nodes.force(I, i), g = bare(I, 1 + Dim + i), p = nodes.momentum(I, i);
-      const bool fixed = nodes.fixed_components(I) >> i & 1;
-      if (!fixed && m > 0) sum[0] += f * f;
-      sum[1] += g * g;
-      if (!fixed && m > 0) sum[2] += 0.5 * p * p / m;
-      if (!fixed) traction[i] = f - g;
-      x[i] = place[i];
-      sum[3 + i] += traction[i];
+      p[i] = nodes.momentum(I, i);
+      f[i] = nodes.force(I, i);
+      g[i] = bare(I, 1 + Dim + i);
     }
-    for (int i = 0; i < 3; ++i) {
-      const int j = (i + 1) % 3, k = (i + 2) % 3;
-      sum[3 + Dim + i] += x[j] * traction[k] - x[k] * traction[j];
-    }
+    add_node_balance(grid.node_position(I), nodes.fixed_components(I), nodes.mass(I), p, f, g, sum);
   }
 };
+
+/// V |sigma|^2 / (2 M) of a particle.
+template <int Dim, class Real>
+KOKKOS_FUNCTION double strain_energy_scale(const SymmetricTensor<Dim, Real>& s, Real volume, double modulus) {
+  double ss = 0;
+  for (int c = 0; c < s.size; ++c)
+    ss += (c < 3 ? 1.0 : 2.0) * static_cast<double>(s[c]) * static_cast<double>(s[c]);
+  return 0.5 * static_cast<double>(volume) * ss / modulus;
+}
 
 template <int Dim, class Real, class Device>
 struct StrainEnergy {
@@ -66,15 +92,26 @@ struct StrainEnergy {
   double modulus;
 
   KOKKOS_FUNCTION void operator()(int i, Vector<1, double>& sum) const {
-    const auto s = particles.stress_of(first + i);
-    double ss = 0;
-    for (int c = 0; c < SymmetricTensor<Dim, Real>::size; ++c)
-      ss += (c < 3 ? 1.0 : 2.0) * static_cast<double>(s[c]) * static_cast<double>(s[c]);
-    sum[0] += 0.5 * static_cast<double>(particles.volume(first + i)) * ss / modulus;
+    sum[0] +=
+        strain_energy_scale<Dim, Real>(particles.stress_of(first + i), particles.volume(first + i), modulus);
   }
 };
 
 }  // namespace kernel
+
+namespace detail {
+
+/// All but the strain energy, from the nodes' sums.
+template <int Size>
+Balance<Size - 6> balance_of(const Vector<Size, double>& sums) {
+  constexpr int Dim = Size - 6;
+  Balance<Dim> result{math::sqrt(sums[0]), math::sqrt(sums[1]), {}, {}, sums[2], 0};
+  for (int i = 0; i < Dim; ++i) result.net_force[i] = sums[3 + i];
+  for (int i = 0; i < 3; ++i) result.net_torque[i] = sums[3 + Dim + i];
+  return result;
+}
+
+}  // namespace detail
 
 /// The balance of a state whose particles all lie in the grid. Overwrites nodes.sums with the sums for the
 /// particles' present positions, and brings the occupancy up to date. Waits for the device.
@@ -90,11 +127,8 @@ Balance<Dim> balance(const Exec& exec, State<Dim, Real, Device>& s, const std::v
   assemble_forces(exec, s.particles, s.occupancy, s.surface, s.nodes, s.sums_workspace, basis, virtual_stress,
                   options.gravity, options.scatter);
   using Functor = kernel::NodeBalance<decltype(basis.grid), Dim, Real, Device>;
-  const auto sums = ordered_sum<Functor::size, Device>(exec, "vsb::node_balance", s.nodes.count(),
-                                                       Functor{basis.grid, s.nodes, bare.sums});
-  Balance<Dim> result{math::sqrt(sums[0]), math::sqrt(sums[1]), {}, {}, sums[2], 0};
-  for (int i = 0; i < Dim; ++i) result.net_force[i] = sums[3 + i];
-  for (int i = 0; i < 3; ++i) result.net_torque[i] = sums[3 + Dim + i];
+  auto result = detail::balance_of(ordered_sum<kernel::BalanceSums<Dim>::size, Device>(
+      exec, "vsb::node_balance", s.nodes.count(), Functor{basis.grid, s.nodes, bare.sums}));
   for (const auto& body : bodies) {
     const double modulus =
         std::visit([](const auto& m) { return double(m.constrained_modulus()); }, body.material);

@@ -18,23 +18,29 @@ struct Invalid {
 
 namespace kernel {
 
-/// The first spoilt field of one particle.
+/// The first spoilt field of a particle with this position, velocity, stress and volume.
+template <int Dim, class Real>
+KOKKOS_FUNCTION ParticleField spoilt_field(const Vector<Dim, Real>& x, const Vector<Dim, Real>& v,
+                                           const SymmetricTensor<Dim, Real>& sigma, Real volume) {
+  const auto finite = [](const auto& row) {
+    for (int c = 0; c < row.size; ++c)
+      if (!math::isfinite(row[c])) return false;
+    return true;
+  };
+  if (!finite(x)) return ParticleField::position;
+  if (!finite(v)) return ParticleField::velocity;
+  if (!finite(sigma)) return ParticleField::cauchy_stress;
+  if (!(volume > 0) || !math::isfinite(volume)) return ParticleField::volume;
+  return ParticleField::none;
+}
+
 template <int Dim, class Real, class Device>
 struct CheckParticle {
   Particles<Dim, Real, Device> particles;
 
-  template <class Row>
-  KOKKOS_FUNCTION static bool finite(const Row& row) {
-    for (int c = 0; c < Row::size; ++c)
-      if (!math::isfinite(row[c])) return false;
-    return true;
-  }
   KOKKOS_FUNCTION ParticleField field(int p) const {
-    if (!finite(particles.position_of(p))) return ParticleField::position;
-    if (!finite(particles.velocity_of(p))) return ParticleField::velocity;
-    if (!finite(particles.stress_of(p))) return ParticleField::cauchy_stress;
-    if (!(particles.volume(p) > 0) || !math::isfinite(particles.volume(p))) return ParticleField::volume;
-    return ParticleField::none;
+    return spoilt_field(particles.position_of(p), particles.velocity_of(p), particles.stress_of(p),
+                        static_cast<Real>(particles.volume(p)));
   }
   KOKKOS_FUNCTION void operator()(int p, int& lowest) const {
     if (field(p) != ParticleField::none) lowest = math::min(lowest, p);

@@ -100,34 +100,86 @@ void Hdf5Writer::group(const std::string& name) {
 }
 
 template <class T>
-void Hdf5Writer::dataset(const std::string& name, const std::vector<T>& values,
-                         const std::vector<size_t>& shape) {
-  const std::string what = fmt::format("{}: cannot write {}", path_, name);
+Hdf5Rows<T>::Hdf5Rows(std::int64_t file, std::string what, const std::string& name,
+                      const std::vector<size_t>& shape)
+    : what_(std::move(what)), shape_(shape), chunk_rows_(shape.at(0)) {
   const std::vector<hsize_t> extent(shape.begin(), shape.end());
-  size_t size = 1;
-  for (const size_t n : shape) size *= n;
-  if (size != values.size())
-    throw FileError(fmt::format("{}: {} has {} values for a shape of {}", path_, name, values.size(), size));
   const int rank = static_cast<int>(extent.size());
-  const Handle space(H5Screate_simple(rank, extent.data(), nullptr), H5Sclose, what);
-  const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, what);
-  check(H5Pset_obj_track_times(properties, false), what);  // the same data makes the same file
-  if (values.size() > 64) {  // chunks of at most about 64k values; tiny sets stay contiguous
+  for (size_t i = 1; i < shape.size(); ++i) row_ *= shape[i];
+  const Handle space(H5Screate_simple(rank, extent.data(), nullptr), H5Sclose, what_);
+  const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, what_);
+  check(H5Pset_obj_track_times(properties, false), what_);  // the same data makes the same file
+  if (shape[0] * row_ > 64) {  // chunks of at most about 64k values; tiny sets stay contiguous
     std::vector<hsize_t> chunk(extent);
     for (size_t i = 0; i < chunk.size(); ++i) {
       hsize_t rest = 1;
       for (size_t j = i + 1; j < chunk.size(); ++j) rest *= extent[j];
       chunk[i] = std::min(chunk[i], std::max<hsize_t>(1, 65536 / rest));
     }
-    check(H5Pset_chunk(properties, rank, chunk.data()), what);
-    check(H5Pset_shuffle(properties), what);
-    check(H5Pset_deflate(properties, 4), what);
-    check(H5Pset_fletcher32(properties), what);
+    chunk_rows_ = chunk[0];
+    check(H5Pset_chunk(properties, rank, chunk.data()), what_);
+    check(H5Pset_shuffle(properties), what_);
+    check(H5Pset_deflate(properties, 4), what_);
+    check(H5Pset_fletcher32(properties), what_);
   }
-  const Handle set(
-      H5Dcreate2(file_, name.c_str(), memory_type(T{}), space, H5P_DEFAULT, properties, H5P_DEFAULT),
-      H5Dclose, what);
-  check(H5Dwrite(set, memory_type(T{}), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), what);
+  set_ = H5Dcreate2(file, name.c_str(), memory_type(T{}), space, H5P_DEFAULT, properties, H5P_DEFAULT);
+  if (set_ < 0) throw FileError(what_);
+}
+
+template <class T>
+Hdf5Rows<T>::~Hdf5Rows() {
+  if (set_ >= 0) H5Dclose(set_);
+}
+
+template <class T>
+void Hdf5Rows<T>::append(const T* values, size_t count) {
+  while (count > 0) {
+    const size_t part = std::min(count, std::max<size_t>(1, chunk_rows_ * row_) - buffer_.size());
+    buffer_.insert(buffer_.end(), values, values + part);
+    values += part;
+    count -= part;
+    if (buffer_.size() >= chunk_rows_ * row_) write();
+  }
+}
+
+/// Whole chunks, so that each is compressed once.
+template <class T>
+void Hdf5Rows<T>::write() {
+  if (buffer_.empty()) return;
+  const size_t rows = buffer_.size() / row_;
+  if (rows * row_ != buffer_.size() || written_ + rows > shape_[0])
+    throw FileError(fmt::format("{}: {} values for a shape of {} x {}", what_,
+                                written_ * row_ + buffer_.size(), shape_[0], row_));
+  std::vector<hsize_t> first(shape_.size(), 0), extent(shape_.begin(), shape_.end());
+  first[0] = written_;
+  extent[0] = rows;
+  const Handle memory(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), H5Sclose,
+                      what_);
+  const Handle file(H5Dget_space(set_), H5Sclose, what_);
+  check(H5Sselect_hyperslab(file, H5S_SELECT_SET, first.data(), nullptr, extent.data(), nullptr), what_);
+  check(H5Dwrite(set_, memory_type(T{}), memory, file, H5P_DEFAULT, buffer_.data()), what_);
+  written_ += rows;
+  buffer_.clear();
+}
+
+template <class T>
+void Hdf5Rows<T>::finish() {
+  write();
+  if (written_ != shape_[0]) throw FileError(fmt::format("{}: {} rows of {}", what_, written_, shape_[0]));
+  const herr_t status = H5Dclose(set_);
+  set_ = -1;
+  check(status, what_);
+}
+template class Hdf5Rows<double>;
+template class Hdf5Rows<std::int64_t>;
+template class Hdf5Rows<unsigned char>;
+
+template <class T>
+void Hdf5Writer::dataset(const std::string& name, const std::vector<T>& values,
+                         const std::vector<size_t>& shape) {
+  auto all = rows<T>(name, shape);
+  all.append(values);
+  all.finish();
 }
 template void Hdf5Writer::dataset(const std::string&, const std::vector<double>&, const std::vector<size_t>&);
 template void Hdf5Writer::dataset(const std::string&, const std::vector<std::int64_t>&,
@@ -209,6 +261,49 @@ std::string Hdf5Reader::text(const std::string& group, const std::string& attrib
   std::string value(H5Tget_size(type), '\0');
   check(H5Aread(a, type, value.data()), what);
   return value.substr(0, value.find('\0'));
+}
+
+Hdf5Bytes::Hdf5Bytes(const std::string& path, const std::string& name)
+    : file_(path), what_(fmt::format("{}: cannot read {}", path, name)) {
+  set_ = H5Dopen2(file_.file_, name.c_str(), H5P_DEFAULT);
+  if (set_ < 0) throw FileError(what_);
+  const hid_t space = H5Dget_space(set_);
+  const hssize_t size = space < 0 ? -1 : H5Sget_simple_extent_npoints(space);
+  const int rank = space < 0 ? 0 : H5Sget_simple_extent_ndims(space);
+  if (space >= 0) H5Sclose(space);
+  if (size < 0 || rank != 1) {
+    H5Dclose(set_);
+    throw FileError(what_);
+  }
+  size_ = static_cast<size_t>(size);
+}
+
+Hdf5Bytes::~Hdf5Bytes() {
+  H5Dclose(set_);
+}
+
+void Hdf5Bytes::take(void* to, size_t bytes) {
+  auto* next = static_cast<unsigned char*>(to);
+  while (bytes > 0) {
+    if (at_ == ahead_) read_ahead();
+    const size_t part = std::min(bytes, ahead_ - at_);
+    std::memcpy(next, &buffer_[buffer_.size() - (ahead_ - at_)], part);
+    next += part;
+    at_ += part;
+    bytes -= part;
+  }
+}
+
+void Hdf5Bytes::read_ahead() {
+  constexpr size_t most = 1 << 20;
+  const hsize_t first = ahead_, count = std::min(most, size_ - ahead_);
+  if (count == 0) throw FileError(what_);
+  buffer_.resize(count);
+  const Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose, what_);
+  const Handle file(H5Dget_space(set_), H5Sclose, what_);
+  check(H5Sselect_hyperslab(file, H5S_SELECT_SET, &first, nullptr, &count, nullptr), what_);
+  check(H5Dread(set_, H5T_NATIVE_UCHAR, memory, file, H5P_DEFAULT, buffer_.data()), what_);
+  ahead_ += count;
 }
 
 void write_text_file(const std::string& path, const std::string& text) {

@@ -7,12 +7,12 @@
 ///   summary.json
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "run/comparison.hpp"
 #include "run/simulation.hpp"
 
 namespace vsb::app {
@@ -26,13 +26,15 @@ class Results {
   /// frames up to the step it resumes from; any other starts with `resumed_step` -1. Throws FileError.
   void begin(long long resumed_step);
 
-  /// `exact` adds the exact solution as fields exact_displacement and exact_cauchy_stress.
-  void write_frame(const Snapshot& snapshot, const ExactFields& exact);
+  void write_frame(const ParticleReader& particles);
   void write_grid_frame(const GridSnapshot& grid, long long step, double time);
-  void write_checkpoint(const SavedState& saved);
+  /// `saved` and the particles of the simulation.
+  void write_checkpoint(const SavedState& saved, Simulation& simulation);
   /// The state to resume from; none where there is no checkpoint. Throws FileError for one that is damaged or
   /// was written by another scene.
   std::optional<SavedState> read_checkpoint() const;
+  /// The particles of that state.
+  std::unique_ptr<ByteSource> read_checkpoint_particles() const;
   /// The step of the checkpoint; none where there is none that can be read.
   std::optional<long long> checkpoint_step() const;
   void remove_checkpoint();

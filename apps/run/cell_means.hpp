@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "run/simulation.hpp"
+#include "run/particle_reader.hpp"
 
 namespace vsb::app {
 
@@ -18,6 +18,6 @@ struct CellMeans {
   std::vector<double> cauchy_stress;  ///< [6 per mean] mean by volume, Pa
 };
 
-CellMeans cell_means(const Scene& scene, const Snapshot& snapshot);
+CellMeans cell_means(const Scene& scene, const ParticleReader& particles);
 
 }  // namespace vsb::app

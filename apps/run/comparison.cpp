@@ -27,7 +27,9 @@ class Norm {
   double sum_ = 0, weight_ = 0;
 };
 
-using Errors = std::vector<std::pair<std::string, double>>;
+/// By name of the error, without a suffix.
+using Norms = std::map<std::string, Norm>;
+using Figures = std::vector<std::pair<std::string, double>>;
 
 /// Stresses at places, each with its weight in a norm.
 struct Samples {
@@ -71,16 +73,15 @@ ExactEllipse<double> solution_of(const EllipseComparison& c, const Scene& scene)
 }
 
 /// Eqs. (31), (33): stresses over the traction or the pressure.
-Errors stress_errors(const ColumnComparison& c, const Scene& scene, const Samples& s) {
+void add_stress_errors(const ColumnComparison& c, const Scene& scene, const Samples& s, Norms& norms) {
   const auto solution = solution_of(c, scene);
-  Norm stress;
+  Norm& stress = norms["e_sigma"];
   for (size_t p = 0; p < s.weight.size(); ++p)
     stress.add((solution.stress() - s.cauchy_stress[6 * p]) / c.traction, s.weight[p]);
-  return {{"e_sigma", stress.value()}};
 }
-Errors stress_errors(const CylinderComparison& c, const Scene& scene, const Samples& s) {
+void add_stress_errors(const CylinderComparison& c, const Scene& scene, const Samples& s, Norms& norms) {
   const auto solution = solution_of(c, scene);
-  Norm rr, tt;
+  Norm &rr = norms["e_rr"], &tt = norms["e_tt"];
   for (size_t p = 0; p < s.weight.size(); ++p) {
     const auto x = from_axis(c, s.position, p);
     const auto exact = solution.stress(std::sqrt(dot(x, x)));
@@ -88,12 +89,12 @@ Errors stress_errors(const CylinderComparison& c, const Scene& scene, const Samp
     rr.add((exact.rr - ours.rr) / c.pressure, s.weight[p]);
     tt.add((exact.tt - ours.tt) / c.pressure, s.weight[p]);
   }
-  return {{"e_rr", rr.value()}, {"e_tt", tt.value()}};
 }
-Errors stress_errors(const YieldingCylinderComparison& c, const Scene& scene, const Samples& s) {
+void add_stress_errors(const YieldingCylinderComparison& c, const Scene& scene, const Samples& s,
+                       Norms& norms) {
   const auto solution = solution_of(c, scene);
   const double rho = solution.plastic_radius();
-  Norm rr, tt;
+  Norm &rr = norms["e_rr"], &tt = norms["e_tt"];
   for (size_t p = 0; p < s.weight.size(); ++p) {
     const auto x = in_plane(s.position, p);
     const auto exact = solution.stress(std::sqrt(dot(x, x)), rho);
@@ -101,11 +102,10 @@ Errors stress_errors(const YieldingCylinderComparison& c, const Scene& scene, co
     rr.add((exact.rr - ours.rr) / c.pressure, s.weight[p]);
     tt.add((exact.tt - ours.tt) / c.pressure, s.weight[p]);
   }
-  return {{"e_rr", rr.value()}, {"e_tt", tt.value()}};
 }
-Errors stress_errors(const EllipseComparison& c, const Scene& scene, const Samples& s) {
+void add_stress_errors(const EllipseComparison& c, const Scene& scene, const Samples& s, Norms& norms) {
   const auto solution = solution_of(c, scene);
-  Norm xx, yy, xy;
+  Norm &xx = norms["e_xx"], &yy = norms["e_yy"], &xy = norms["e_xy"];
   for (size_t p = 0; p < s.weight.size(); ++p) {
     const auto exact = solution.stress(in_plane(s.position, p));
     const auto difference = exact - in_plane_stress(s.cauchy_stress, p);
@@ -113,7 +113,6 @@ Errors stress_errors(const EllipseComparison& c, const Scene& scene, const Sampl
     yy.add(difference(1, 1) / c.pressure, s.weight[p]);
     xy.add(difference(0, 1) / c.pressure, s.weight[p]);
   }
-  return {{"e_xx", xx.value()}, {"e_yy", yy.value()}, {"e_xy", xy.value()}};
 }
 
 /// u / x0 of the exact solution for the body's law.
@@ -126,38 +125,33 @@ double stretching(const ColumnComparison& c, const Scene& scene) {
 /// Eq. (30): particles count alike, lengths over L0. e_u is against (A1) as printed, as in Table 2; e_u_exact
 /// against the solution for the body's law, which for the rate form is the one that the paper's own volumes
 /// imply.
-Errors displacement_errors(const ColumnComparison& c, const Scene& scene, const Snapshot& s) {
+void add_displacement_errors(const ColumnComparison& c, const Scene& scene, const Snapshot& s, Norms& norms) {
   const auto solution = solution_of(c, scene);
   const double exact_ratio = stretching(c, scene);
-  Norm printed, exact;
+  Norm &printed = norms["e_u"], &exact = norms["e_u_exact"];
   for (size_t p = 0; p < s.count(); ++p) {
     const double x0 = s.initial_position[3 * p] - scene.grid.lower[0];
     const double u = s.position[3 * p] - s.initial_position[3 * p];
     if (c.printed_solution) printed.add((solution.displacement_as_printed(x0) - u) / c.length, 1);
     exact.add((exact_ratio * x0 - u) / c.length, 1);
   }
-  return {{"e_u", printed.value()}, {"e_u_exact", exact.value()}};
 }
 /// Eq. (32) for the radial displacement: particles count by volume, lengths over a; at current positions.
-Errors displacement_errors(const CylinderComparison& c, const Scene& scene, const Snapshot& s) {
+void add_displacement_errors(const CylinderComparison& c, const Scene& scene, const Snapshot& s,
+                             Norms& norms) {
   const auto solution = solution_of(c, scene);
-  Norm u;
+  Norm& u = norms["e_u"];
   for (size_t p = 0; p < s.count(); ++p) {
     const auto x = from_axis(c, s.position, p),
                x0 = in_plane(s.initial_position, p) - Vector<2, double>{{c.center[0], c.center[1]}};
     const double r = std::sqrt(dot(x, x));
     u.add((solution.radial_displacement(r) - dot(x - x0, x) / r) / c.inner_radius, s.volume[p]);
   }
-  return {{"e_u", u.value()}};
 }
 
 /// The displacements of the ellipse and of the cylinder that yields are not in closed form here.
-Errors displacement_errors(const EllipseComparison&, const Scene&, const Snapshot&) {
-  return {};
-}
-Errors displacement_errors(const YieldingCylinderComparison&, const Scene&, const Snapshot&) {
-  return {};
-}
+void add_displacement_errors(const EllipseComparison&, const Scene&, const Snapshot&, Norms&) {}
+void add_displacement_errors(const YieldingCylinderComparison&, const Scene&, const Snapshot&, Norms&) {}
 
 ExactFields exact_fields(const ColumnComparison& c, const Scene& scene, const Snapshot& s) {
   const auto solution = solution_of(c, scene);
@@ -207,24 +201,44 @@ ExactFields exact_fields(const EllipseComparison& c, const Scene& scene, const S
 }
 
 /// What is compared but is no error: the mean hoop stress over the exact one.
-Errors other_figures(const CylinderComparison& c, const Scene& scene, const Snapshot& s) {
-  const auto solution = solution_of(c, scene);
+struct HoopRatio {
   double hoop = 0, exact = 0;
-  for (size_t p = 0; p < s.count(); ++p) {
-    const auto x = from_axis(c, s.position, p);
-    hoop += s.volume[p] * to_polar(in_plane_stress(s.cauchy_stress, p), x[0], x[1]).tt;
-    exact += s.volume[p] * solution.stress(std::sqrt(dot(x, x))).tt;
+  void add(const CylinderComparison& c, const Scene& scene, const Snapshot& s) {
+    const auto solution = solution_of(c, scene);
+    for (size_t p = 0; p < s.count(); ++p) {
+      const auto x = from_axis(c, s.position, p);
+      hoop += s.volume[p] * to_polar(in_plane_stress(s.cauchy_stress, p), x[0], x[1]).tt;
+      exact += s.volume[p] * solution.stress(std::sqrt(dot(x, x))).tt;
+    }
   }
-  return {{"hoop_ratio", hoop / exact}};
-}
+  Figures figures(const CylinderComparison&, const Scene&) const { return {{"hoop_ratio", hoop / exact}}; }
+};
 /// How far it has yielded: the mean radius, that of the furthest particle, and the exact one.
-Errors other_figures(const YieldingCylinderComparison& c, const Scene& scene, const Snapshot& s) {
-  return {{"plastic_radius", plastic_radius(c, s)},
-          {"plastic_reach", plastic_reach(c, s)},
-          {"exact_radius", solution_of(c, scene).plastic_radius()}};
+struct PlasticRadii {
+  PlasticZone zone;
+  void add(const YieldingCylinderComparison&, const Scene&, const Snapshot& s) { zone.add(s); }
+  Figures figures(const YieldingCylinderComparison& c, const Scene& scene) const {
+    return {{"plastic_radius", zone.radius(c)},
+            {"plastic_reach", zone.reach(c)},
+            {"exact_radius", solution_of(c, scene).plastic_radius()}};
+  }
+};
+struct NoFigures {
+  template <class Solution>
+  void add(const Solution&, const Scene&, const Snapshot&) {}
+  template <class Solution>
+  Figures figures(const Solution&, const Scene&) const {
+    return {};
+  }
+};
+HoopRatio figures_of(const CylinderComparison&) {
+  return {};
+}
+PlasticRadii figures_of(const YieldingCylinderComparison&) {
+  return {};
 }
 template <class Solution>
-Errors other_figures(const Solution&, const Scene&, const Snapshot&) {
+NoFigures figures_of(const Solution&) {
   return {};
 }
 
@@ -238,25 +252,40 @@ std::vector<double> weights(const InThePlane&, const Snapshot& s) {
 }
 
 template <class Solution>
-ComparisonResult compare(const Solution& c, const Scene& scene, const Snapshot& s) {
-  std::map<std::string, double> errors;
-  const auto add = [&](const Errors& more, const char* suffix) {
-    for (const auto& [name, value] : more) errors[name + suffix] = value;
-  };
-  add(displacement_errors(c, scene, s), "");
-  const auto weight = weights(c, s);
-  add(stress_errors(c, scene, {s.position, s.cauchy_stress, weight}), "");
-  if (scene.more_norms.recovered)
-    add(stress_errors(c, scene, {s.position, s.recovered_stress, weight}), "_recovered");
+ComparisonResult compare(const Solution& c, const Scene& scene, const ParticleReader& particles) {
+  Norms norms, of_recovered, of_means;
+  auto others = figures_of(c);
+  unsigned fields = field::initial_position | field::position | field::cauchy_stress | field::volume;
+  if (std::holds_alternative<YieldingCylinderComparison>(scene.compare)) fields |= field::plastic_strain;
+  if (scene.more_norms.recovered) fields |= field::recovered_stress;
+  particles.for_each_range(fields, [&](const Snapshot& s) {
+    const auto weight = weights(c, s);
+    add_displacement_errors(c, scene, s, norms);
+    add_stress_errors(c, scene, {s.position, s.cauchy_stress, weight}, norms);
+    if (scene.more_norms.recovered)
+      add_stress_errors(c, scene, {s.position, s.recovered_stress, weight}, of_recovered);
+    others.add(c, scene, s);
+  });
   if (scene.more_norms.cell_means) {
-    const CellMeans means = cell_means(scene, s);
-    add(stress_errors(c, scene, {means.position, means.cauchy_stress, means.volume}), "_cell_mean");
+    const CellMeans means = cell_means(scene, particles);
+    add_stress_errors(c, scene, {means.position, means.cauchy_stress, means.volume}, of_means);
   }
-  ComparisonResult result{{}, exact_fields(c, scene, s), other_figures(c, scene, s)};
+  std::map<std::string, double> errors;
+  const auto enter = [&](const Norms& of, const char* suffix) {
+    for (const auto& [name, norm] : of) errors[name + suffix] = norm.value();
+  };
+  enter(norms, "");
+  enter(of_recovered, "_recovered");
+  enter(of_means, "_cell_mean");
+  ComparisonResult result{{}, others.figures(c, scene)};
   for (const auto& name : error_names(scene)) result.errors.emplace_back(name, errors.at(name));
   return result;
 }
-ComparisonResult compare(const std::monostate&, const Scene&, const Snapshot&) {
+ComparisonResult compare(const std::monostate&, const Scene&, const ParticleReader&) {
+  return {};
+}
+
+ExactFields exact_fields(const std::monostate&, const Scene&, const Snapshot&) {
   return {};
 }
 
@@ -269,8 +298,19 @@ std::vector<std::string> comparison_figure_names(const Comparison& comparison) {
   return {};
 }
 
-ComparisonResult compare_with_exact(const Scene& scene, const Snapshot& snapshot) {
-  return std::visit([&](const auto& c) { return compare(c, scene, snapshot); }, scene.compare);
+KnownExactly known_exactly(const Scene& scene) {
+  const auto& c = scene.compare;
+  if (std::holds_alternative<std::monostate>(c)) return {};
+  if (std::holds_alternative<ColumnComparison>(c)) return {true, true, field::initial_position};
+  return {std::holds_alternative<CylinderComparison>(c), true, field::position};
+}
+
+ExactFields exact_at(const Scene& scene, const Snapshot& snapshot) {
+  return std::visit([&](const auto& c) { return exact_fields(c, scene, snapshot); }, scene.compare);
+}
+
+ComparisonResult compare_with_exact(const Scene& scene, const ParticleReader& particles) {
+  return std::visit([&](const auto& c) { return compare(c, scene, particles); }, scene.compare);
 }
 
 }  // namespace vsb::app

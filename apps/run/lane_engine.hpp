@@ -3,11 +3,16 @@
 /// Steps of a scene on cell lanes (kernels/lane_step.hpp), the fast way; and which scenes can go it.
 #pragma once
 
+#include <functional>
 #include <memory>
 
+#include <vsb/kernels/balance.hpp>
+#include <vsb/kernels/health.hpp>
 #include <vsb/kernels/lane_loads.hpp>
+#include "run/byte_stream.hpp"
 #include "run/execution_space.hpp"
 #include "run/loads.hpp"
+#include "run/particle_reader.hpp"
 
 namespace vsb::app {
 
@@ -28,11 +33,14 @@ class LaneEngine {
     int gauss_points;
     Material<Real> material;
     int state_size;  ///< of the material
+    int particles;
     StepOptions<Dim, Real> options;
   };
-  /// Packs the particles, which must lie in the grid, and the surface points, if there are any.
-  LaneEngine(const Setup& setup, const Particles<Dim, Real, Device>& particles,
-             const SurfacePoints<Dim, Real, Device>& surface);
+  /// Takes the surface points, if there are any; the particles come with pack or restore.
+  LaneEngine(const Setup& setup, const SurfacePoints<Dim, Real, Device>& surface);
+
+  /// Packs the particles, which must lie in the grid. They are handed over: nobody needs them any more.
+  void pack(ParticleBlock<Dim, Real, Device> block);
 
   /// Makes ready for a first step under these loads. Returns -1, or what step() returns of a surface point.
   int prepare(const Loads<Dim, Real>& loads);
@@ -43,12 +51,26 @@ class LaneEngine {
   /// Writes the particles and the surface points back.
   void unpack(const Particles<Dim, Real, Device>& particles,
               const SurfacePoints<Dim, Real, Device>& surface) const;
+  /// The same of places and masses alone.
+  Particles<Dim, Real, Device> mass_points() const;
   int boundary_nodes() const;
   size_t bytes() const;
 
+  /// Of the particles between steps.
+  Invalid find_invalid() const;
+  /// Whether all loads are virtual stresses as the sweeps take them, which is what `balance` knows.
+  bool loaded_by_sweeps() const { return state_.surface.count() == 0 && state_.original == 0; }
+  Balance<Dim> balance(const Loads<Dim, Real>& loads) const;
+  /// strain [particle], of a plastic material.
+  void equivalent_plastic_strain(const Kokkos::View<Real*, Device>& strain) const;
+  /// Calls visit(particle, cell of the grid) for all of them, in any order.
+  void for_each_cell(const std::function<void(int, const Vector<Dim, int>&)>& visit) const;
+  /// Their fields, until the next step.
+  std::unique_ptr<FieldSource> fields() const;
+
   /// The state bit by bit, and back; false where it is not one of this scene's.
-  std::vector<unsigned char> save() const;
-  bool restore(const std::vector<unsigned char>& saved);
+  void save(ByteSink& to) const;
+  bool restore(ByteSource& saved);
 
  private:
   int add_loads(const Loads<Dim, Real>& loads);

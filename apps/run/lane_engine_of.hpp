@@ -3,73 +3,34 @@
 /// The members of LaneEngine, compiled for each dimension and precision on its own.
 #pragma once
 
-#include <algorithm>
-#include <cstring>
+#include <utility>
 
+#include <vsb/kernels/lane_balance.hpp>
+#include <vsb/kernels/lane_health.hpp>
 #include "run/lane_engine.hpp"
+#include "run/lane_fields.hpp"
 
 namespace vsb::app {
 
 namespace detail {
-
-/// Bytes behind a row of fields, each with its length.
-class Writer {
- public:
-  template <class T>
-  void number(const T& x) {
-    bytes(&x, sizeof x);
-  }
-  template <class T>
-  void array(const T* first, size_t count) {
-    number(count);
-    bytes(first, count * sizeof(T));
-  }
-  std::vector<unsigned char> result;
-
- private:
-  void bytes(const void* from, size_t n) {
-    const auto* b = static_cast<const unsigned char*>(from);
-    result.insert(result.end(), b, b + n);
-  }
-};
-
-class Reader {
- public:
-  explicit Reader(const std::vector<unsigned char>& from) : from_(from) {}
-  template <class T>
-  bool number(T& x) {
-    return bytes(&x, sizeof x);
-  }
-  /// An array of exactly `count` values.
-  template <class T>
-  bool array(T* first, size_t count) {
-    size_t found = 0;
-    return number(found) && found == count && bytes(first, count * sizeof(T));
-  }
-  bool at_end() const { return at_ == from_.size(); }
-
- private:
-  bool bytes(void* to, size_t n) {
-    if (from_.size() - at_ < n) return false;
-    std::memcpy(to, from_.data() + at_, n);
-    at_ += n;
-    return true;
-  }
-  const std::vector<unsigned char>& from_;
-  size_t at_ = 0;
-};
 
 template <class View>
 auto on_host(const View& view) {
   return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), view);
 }
 
-/// The numbers of the slots in use.
-inline std::vector<size_t> slots_in_use(const std::vector<GroupShape>& groups) {
-  std::vector<size_t> used;
+/// The slots in use, as runs of consecutive ones: first slot, slots.
+struct SlotRuns {
+  std::vector<std::pair<size_t, size_t>> runs;
+  size_t slots = 0;
+};
+inline SlotRuns runs_of_slots(const std::vector<GroupShape>& groups) {
+  SlotRuns used;
   size_t first = 0;
   for (const auto& group : groups) {
-    for (int s = 0; s < group.slots; ++s) used.push_back(first + static_cast<size_t>(s));
+    const auto slots = static_cast<size_t>(group.slots);
+    if (slots > 0) used.runs.emplace_back(first, slots);
+    used.slots += slots;
     first += static_cast<size_t>(group.capacity);
   }
   return used;
@@ -77,7 +38,7 @@ inline std::vector<size_t> slots_in_use(const std::vector<GroupShape>& groups) {
 
 /// An array as long as the view.
 template <class View>
-bool read_view(Reader& r, const View& view) {
+bool read_view(ByteReader& r, const View& view) {
   const auto host = Kokkos::create_mirror_view(view);
   if (!r.array(host.data(), host.span())) return false;
   Kokkos::deep_copy(view, host);
@@ -87,18 +48,22 @@ bool read_view(Reader& r, const View& view) {
 }  // namespace detail
 
 template <int Dim, class Real>
-LaneEngine<Dim, Real>::LaneEngine(const Setup& setup, const Particles<Dim, Real, Device>& particles,
-                                  const SurfacePoints<Dim, Real, Device>& surface)
+LaneEngine<Dim, Real>::LaneEngine(const Setup& setup, const SurfacePoints<Dim, Real, Device>& surface)
     : setup_(setup) {
   state_.memory.grid = setup.grid;
   state_.memory.walls = setup.walls;
   state_.memory.lanes.state_size = setup.state_size;
+  state_.memory.lanes.particle_count = setup.particles;
   state_.boundary.declared = setup.tractions;
   state_.boundary.conservative = setup.conservative;
   state_.original = setup.original;
   state_.gauss_points = setup.gauss_points;
   state_.surface = pack_surface_points(exec_, surface, setup.grid);
-  pack_lanes(exec_, particles, state_);
+}
+
+template <int Dim, class Real>
+void LaneEngine<Dim, Real>::pack(ParticleBlock<Dim, Real, Device> block) {
+  pack_lanes(exec_, block.particles, state_);
 }
 
 template <int Dim, class Real>
@@ -139,6 +104,53 @@ void LaneEngine<Dim, Real>::unpack(const Particles<Dim, Real, Device>& particles
 }
 
 template <int Dim, class Real>
+Particles<Dim, Real, typename LaneEngine<Dim, Real>::Device> LaneEngine<Dim, Real>::mass_points() const {
+  return unpack_mass_points(exec_, state_.memory);
+}
+
+template <int Dim, class Real>
+Invalid LaneEngine<Dim, Real>::find_invalid() const {
+  return vsb::find_invalid(exec_, state_.memory);
+}
+
+template <int Dim, class Real>
+Balance<Dim> LaneEngine<Dim, Real>::balance(const Loads<Dim, Real>& loads) const {
+  const double modulus =
+      std::visit([](const auto& m) { return double(m.constrained_modulus()); }, setup_.material);
+  Balance<Dim> result{};
+  loads.with_lane_field([&](const auto& field) {
+    result = vsb::balance(exec_, state_, modulus, field, setup_.options.gravity);
+  });
+  return result;
+}
+
+template <int Dim, class Real>
+void LaneEngine<Dim, Real>::equivalent_plastic_strain(const Kokkos::View<Real*, Device>& strain) const {
+  const auto& lanes = state_.memory.lanes;
+  Kokkos::parallel_for("vsb::lane_plastic_strain",
+                       Kokkos::RangePolicy<ExecutionSpace>(exec_, 0, lanes.group_count),
+                       kernel::LanePlasticStrain<Dim, Real, Device>{lanes, strain});
+}
+
+template <int Dim, class Real>
+void LaneEngine<Dim, Real>::for_each_cell(
+    const std::function<void(int, const Vector<Dim, int>&)>& visit) const {
+  const auto& lanes = state_.memory.lanes;
+  const auto groups = detail::on_host(lanes.groups);
+  const auto id = detail::on_host(lanes.id);
+  for (size_t g = 0; g < groups.extent(0); ++g) {
+    const auto& group = groups(g);
+    for (size_t e = lanes.begin(group); e < lanes.end(group); ++e)
+      if (id(e) >= 0) visit(id(e), lanes.cell(group, static_cast<int>(e % lanes.width)));
+  }
+}
+
+template <int Dim, class Real>
+std::unique_ptr<FieldSource> LaneEngine<Dim, Real>::fields() const {
+  return std::make_unique<LaneFields<Dim, Real>>(exec_, state_);
+}
+
+template <int Dim, class Real>
 int LaneEngine<Dim, Real>::boundary_nodes() const {
   return count_loaded_nodes(exec_, state_.memory.lanes, state_.boundary);
 }
@@ -157,12 +169,12 @@ size_t LaneEngine<Dim, Real>::bytes() const {
 }
 
 template <int Dim, class Real>
-std::vector<unsigned char> LaneEngine<Dim, Real>::save() const {
+void LaneEngine<Dim, Real>::save(ByteSink& to) const {
   const auto& m = state_.memory;
   const auto& l = m.lanes;
   const size_t entries = static_cast<size_t>(l.slot_count) * l.width,
                nodes = static_cast<size_t>(l.node_count);
-  detail::Writer w;
+  ByteWriter w(to);
   w.number(l.width);
   w.number(l.box);
   w.number(l.group_count);
@@ -182,13 +194,12 @@ std::vector<unsigned char> LaneEngine<Dim, Real>::save() const {
   }
   w.array(shape.data(), shape.size());
   w.array(detail::on_host(l.id).data(), entries);
-  const auto data = detail::on_host(l.data);
-  const auto used = detail::slots_in_use(shape);
-  std::vector<Real> column(used.size() * l.width);
+  // The slots in use, column by column.
+  const auto used = detail::runs_of_slots(shape);
   for (int c = 0; c < l.columns(); ++c) {
-    for (size_t n = 0; n < used.size(); ++n)
-      std::copy_n(&data(used[n] * l.width, static_cast<size_t>(c)), l.width, &column[n * l.width]);
-    w.array(column.data(), column.size());
+    const auto column = detail::on_host(Kokkos::subview(l.data, Kokkos::ALL(), static_cast<size_t>(c)));
+    w.number(used.slots * static_cast<size_t>(l.width));
+    for (const auto& [first, slots] : used.runs) w.values(&column(first * l.width), slots * l.width);
   }
   const auto sums = detail::on_host(m.nodes.data);
   for (int c = 0; c < 2 * m.nodes.sum_columns; ++c) w.array(&sums(0, static_cast<size_t>(c)), nodes);
@@ -199,12 +210,11 @@ std::vector<unsigned char> LaneEngine<Dim, Real>::save() const {
     w.array(detail::on_host(p.xi).data(), p.xi.span());
     w.array(detail::on_host(p.area).data(), p.area.span());
   }
-  return std::move(w.result);
 }
 
 template <int Dim, class Real>
-bool LaneEngine<Dim, Real>::restore(const std::vector<unsigned char>& saved) {
-  detail::Reader r(saved);
+bool LaneEngine<Dim, Real>::restore(ByteSource& saved) {
+  ByteReader r(saved);
   auto& m = state_.memory;
   int width = 0, groups = 0, slots = 0, nodes = 0, slack = 0, since = 0, flow = 0;
   CellBox<Dim> box;
@@ -244,15 +254,15 @@ bool LaneEngine<Dim, Real>::restore(const std::vector<unsigned char>& saved) {
       if (id(slot * l.width + static_cast<size_t>(lane)) >= 0) held(slot) |= LaneMask(1) << lane;
   }
   Kokkos::deep_copy(l.held, held);
-  const auto data = Kokkos::create_mirror_view(l.data);
-  const auto used = detail::slots_in_use(shape);
-  std::vector<Real> column(used.size() * l.width);
+  const auto used = detail::runs_of_slots(shape);
   for (int c = 0; c < l.columns(); ++c) {
-    if (!r.array(column.data(), column.size())) return false;
-    for (size_t n = 0; n < used.size(); ++n)
-      std::copy_n(&column[n * l.width], l.width, &data(used[n] * l.width, static_cast<size_t>(c)));
+    const auto on_device = Kokkos::subview(l.data, Kokkos::ALL(), static_cast<size_t>(c));
+    const auto column = Kokkos::create_mirror_view(on_device);
+    if (!r.length(used.slots * static_cast<size_t>(l.width))) return false;
+    for (const auto& [first, in_run] : used.runs)
+      if (!r.values(&column(first * l.width), in_run * l.width)) return false;
+    Kokkos::deep_copy(on_device, column);
   }
-  Kokkos::deep_copy(l.data, data);
   const auto sums = Kokkos::create_mirror_view(m.nodes.data);
   for (int c = 0; c < 2 * m.nodes.sum_columns; ++c)
     if (!r.array(&sums(0, static_cast<size_t>(c)), static_cast<size_t>(nodes))) return false;

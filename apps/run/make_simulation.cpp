@@ -19,10 +19,14 @@ std::unique_ptr<Simulation> make_simulation(const Scene& scene) {
   }
 }
 
-std::string state_hash(const SavedState& saved) {
-  std::uint64_t hash = 14695981039346656037u;
-  for (const unsigned char byte : saved.particles) hash = (hash ^ byte) * 1099511628211u;
-  return fmt::format("{:016x}", hash);
+std::string ByteHash::text() const {
+  return fmt::format("{:016x}", hash_);
+}
+
+std::string state_hash(Simulation& simulation) {
+  ByteHash hash;
+  simulation.save_particles(hash);
+  return hash.text();
 }
 
 int count_particles(const Scene& scene) {

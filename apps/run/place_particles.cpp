@@ -26,7 +26,9 @@ bool in_grid(const Scene& scene, const Point& x) {
                   body.name, other.name, x[0], x[1], x[2]));
 }
 
-void place_lattice_points(const Scene& scene, size_t b, PlacedParticles& placed) {
+/// Calls place(position, volume).
+template <class Place>
+void place_lattice_points(const Scene& scene, size_t b, const Place& place) {
   const auto& body = scene.bodies[b];
   for_each_lattice_point(scene, body, [&](const LatticePoint& point) {
     Point x = point.x;
@@ -39,14 +41,14 @@ void place_lattice_points(const Scene& scene, size_t b, PlacedParticles& placed)
           "body '{}': its jitter moves a particle out of the grid, to ({}, {}, {}): make the grid larger, "
           "or let a face of the grid lie between two points of the lattice",
           body.name, x[0], x[1], x[2]));
-    placed.position.push_back(x);
-    placed.volume.push_back(point.volume);
+    place(x, point.volume);
   });
 }
 
 /// Bodies that touch share boxes, and the centroid of one's share may lie in the other: they overlap where
-/// they have volume in common.
-void place_lattice_shares(const Scene& scene, size_t b, PlacedParticles& placed) {
+/// they have volume in common. Adds to `cut`.
+template <class Place>
+void place_lattice_shares(const Scene& scene, size_t b, CutVolume& cut, const Place& place) {
   const auto& body = scene.bodies[b];
   const auto limits = bounding_box(scene.grid, scene.dimension);
   const auto volume = for_each_lattice_share(scene, body, limits, [&](const LatticeShare& share) {
@@ -57,11 +59,18 @@ void place_lattice_shares(const Scene& scene, size_t b, PlacedParticles& placed)
       if (common.volume > least_share * volume_of(share.box, scene.dimension))
         throw_overlap(body, scene.bodies[other], common.centroid);
     }
-    placed.position.push_back(share.position);
-    placed.volume.push_back(share.volume);
+    place(share.position, share.volume);
   });
-  placed.cut.particles += volume.particles;
-  placed.cut.dropped += volume.dropped;
+  cut.particles += volume.particles;
+  cut.dropped += volume.dropped;
+}
+
+template <class Place>
+void place_body(const Scene& scene, size_t b, CutVolume& cut, const Place& place) {
+  if (scene.bodies[b].boundary == BoundaryBoxes::keep)
+    place_lattice_points(scene, b, place);
+  else
+    place_lattice_shares(scene, b, cut, place);
 }
 
 }  // namespace
@@ -72,10 +81,10 @@ PlacedParticles place_particles(const Scene& scene) {
   for (size_t b = 0; b < scene.bodies.size(); ++b) {
     const auto& body = scene.bodies[b];
     const auto first = placed.position.size();
-    if (body.boundary == BoundaryBoxes::keep)
-      place_lattice_points(scene, b, placed);
-    else
-      place_lattice_shares(scene, b, placed);
+    place_body(scene, b, placed.cut, [&](const Point& x, double volume) {
+      placed.position.push_back(x);
+      placed.volume.push_back(volume);
+    });
     if (placed.position.size() == first)
       throw SetupError(fmt::format(
           "body '{}' has no particle: its shape contains no lattice point of the grid", body.name));
@@ -85,6 +94,12 @@ PlacedParticles place_particles(const Scene& scene) {
   }
   if (scene.method.moment_fit) placed.moment_fit = fit_moments(scene, placed);
   return placed;
+}
+
+void for_each_start(const Scene& scene, const std::function<void(const Point&)>& visit) {
+  CutVolume cut;
+  for (size_t b = 0; b < scene.bodies.size(); ++b)
+    place_body(scene, b, cut, [&](const Point& x, double) { visit(x); });
 }
 
 }  // namespace vsb::app

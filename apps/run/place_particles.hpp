@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "scene/scene.hpp"
@@ -41,5 +42,8 @@ struct PlacedParticles {
 /// SetupError for an empty body, for bodies that overlap, and for a jitter that moves a particle out of the
 /// grid.
 PlacedParticles place_particles(const Scene& scene);
+
+/// Calls visit(x) for all of them in order, x being where they are placed, and keeps none.
+void for_each_start(const Scene& scene, const std::function<void(const Point&)>& visit);
 
 }  // namespace vsb::app

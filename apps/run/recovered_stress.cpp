@@ -12,6 +12,7 @@
 #include <cmath>
 
 #include "run/host_basis.hpp"
+#include "run/simulation.hpp"
 
 namespace vsb::app {
 
@@ -139,15 +140,15 @@ class Projection {
 
 }  // namespace
 
-void recover_stress(const Scene& scene, Snapshot& snapshot) {
-  std::vector<double> recovered(snapshot.cauchy_stress.size(), 0.0);
+std::vector<double> recovered_stress(const Scene& scene, const Snapshot& particles) {
+  std::vector<double> recovered(particles.cauchy_stress.size(), 0.0);
   with_host_basis(scene, [&](const auto& basis) {
-    for (const auto& body : snapshot.bodies) {
-      Projection projection(basis, snapshot, body);
+    for (const auto& body : particles.bodies) {
+      Projection projection(basis, particles, body);
       for (size_t c = 0; c < 6; ++c) projection.project(c, recovered);
     }
   });
-  snapshot.recovered_stress = std::move(recovered);
+  return recovered;
 }
 
 }  // namespace vsb::app

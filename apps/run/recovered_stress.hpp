@@ -9,12 +9,12 @@
 /// Every body has its own field, since stresses may jump between bodies.
 #pragma once
 
-#include "run/simulation.hpp"
+#include "run/particle_reader.hpp"
 
 namespace vsb::app {
 
-/// Fills snapshot.recovered_stress. Throws Diverged where the system cannot be solved, as with stresses that
-/// are not finite.
-void recover_stress(const Scene& scene, Snapshot& snapshot);
+/// The recovered stress of all particles, 6 components each, from their position, stress and volume. Throws
+/// Diverged where the system cannot be solved, as with stresses that are not finite.
+std::vector<double> recovered_stress(const Scene& scene, const Snapshot& particles);
 
 }  // namespace vsb::app

@@ -10,14 +10,16 @@ namespace vsb::app {
 
 namespace {
 
-AxisBox box_around(const Snapshot& s) {
+AxisBox box_around(const ParticleReader& particles) {
   AxisBox box;
   box.lower.fill(std::numeric_limits<double>::infinity());
   box.upper.fill(-std::numeric_limits<double>::infinity());
-  for (size_t n = 0; n < s.position.size(); ++n) {
-    box.lower[n % 3] = std::min(box.lower[n % 3], s.position[n]);
-    box.upper[n % 3] = std::max(box.upper[n % 3], s.position[n]);
-  }
+  particles.for_each_range(field::position, [&](const Snapshot& s) {
+    for (size_t n = 0; n < s.position.size(); ++n) {
+      box.lower[n % 3] = std::min(box.lower[n % 3], s.position[n]);
+      box.upper[n % 3] = std::max(box.upper[n % 3], s.position[n]);
+    }
+  });
   return box;
 }
 
@@ -27,8 +29,8 @@ double length(const Point& v) {
 
 }  // namespace
 
-ResultantShare resultant_share(const Scene& scene, const BalanceReport& balance, const Snapshot& initial,
-                               double time) {
+ResultantShare resultant_share(const Scene& scene, const BalanceReport& balance,
+                               const ParticleReader& initial, double time) {
   ResultantShare share;
   const auto resultants = exact_resultants(scene);
   for (size_t k = 0; k < resultants.size(); ++k)

@@ -16,7 +16,7 @@ struct ResultantShare {
 };
 
 /// Of the balance of the initial state under the loads at a time, s.
-ResultantShare resultant_share(const Scene& scene, const BalanceReport& balance, const Snapshot& initial,
-                               double time);
+ResultantShare resultant_share(const Scene& scene, const BalanceReport& balance,
+                               const ParticleReader& initial, double time);
 
 }  // namespace vsb::app

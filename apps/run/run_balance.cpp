@@ -14,7 +14,7 @@ RunResult run_balance(const Scene& scene, const RunOptions& options) {
   figures.solution = Solution::balance;
   const double settled = loads_settled_at(scene);
   figures.balance = simulation->balance_under_loads_at(settled);
-  figures.share = resultant_share(scene, figures.balance, simulation->snapshot(), settled);
+  figures.share = resultant_share(scene, figures.balance, *simulation->read_particles(), settled);
   take_state(figures, scene, *simulation);
   results.write_summary(summary_json(scene, figures));
   return {exit_done, figures};

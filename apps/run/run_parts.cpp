@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "run/comparison.hpp"
 #include "run/recovered_stress.hpp"
 #include "run/scene_advice.hpp"
 
@@ -14,13 +15,14 @@ namespace vsb::app {
 
 namespace {
 
-/// A snapshot with the recovered stress where a field or a norm needs it.
-Snapshot take_snapshot(const Scene& scene, Simulation& simulation) {
+/// With the recovered stress where a field or a norm needs it.
+std::unique_ptr<ParticleReader> read_particles(const Scene& scene, Simulation& simulation) {
   const auto& fields = scene.output.fields;
-  Snapshot snapshot = simulation.snapshot();
+  auto particles = simulation.read_particles();
   if (scene.more_norms.recovered || std::count(fields.begin(), fields.end(), "recovered_stress") > 0)
-    recover_stress(scene, snapshot);
-  return snapshot;
+    particles->recovered_stress =
+        recovered_stress(scene, particles->all(field::position | field::cauchy_stress | field::volume));
+  return particles;
 }
 
 }  // namespace
@@ -54,14 +56,13 @@ void announce_discarded_checkpoint(const Results& results) {
 
 void write_frames(Results& results, const Scene& scene, Simulation& simulation) {
   simulation.check_health();
-  const Snapshot snapshot = take_snapshot(scene, simulation);
-  results.write_frame(snapshot, compare_with_exact(scene, snapshot).exact);
-  if (scene.output.grid) results.write_grid_frame(simulation.grid_snapshot(), snapshot.step, snapshot.time);
+  results.write_frame(*read_particles(scene, simulation));
+  if (scene.output.grid)
+    results.write_grid_frame(simulation.grid_snapshot(), simulation.step(), simulation.time());
 }
 
 void take_state(RunFigures& figures, const Scene& scene, Simulation& simulation) {
-  figures.state_hash = state_hash(simulation.save());
-  const auto comparison = compare_with_exact(scene, take_snapshot(scene, simulation));
+  const auto comparison = compare_with_exact(scene, *read_particles(scene, simulation));
   figures.errors = comparison.errors;
   figures.compared = comparison.figures;
   figures.cut = simulation.cut_volume();
@@ -69,6 +70,7 @@ void take_state(RunFigures& figures, const Scene& scene, Simulation& simulation)
   figures.particles = simulation.particle_count();
   figures.boundary_nodes = simulation.boundary_nodes();
   figures.void_filter = simulation.void_filter();
+  figures.state_hash = state_hash(simulation);
   figures.state_bytes = simulation.state_bytes();
 }
 

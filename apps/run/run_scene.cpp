@@ -86,7 +86,7 @@ RunResult run(const Scene& scene, const RunOptions& options) {
   long long resumed_step = -1;
   if (options.resume) {
     if (const auto saved = results.read_checkpoint()) {
-      simulation->restore(*saved);
+      simulation->restore(*saved, *results.read_checkpoint_particles());
       if (stages) stages->restore(saved->staged);
       resumed_step = saved->step;
     } else if (!options.progress_only) {
@@ -120,8 +120,9 @@ RunResult run(const Scene& scene, const RunOptions& options) {
   const auto last_step = [&] { return (stages ? stages->first_step() : 0) + scene.time.steps; };
   const auto stage_seconds = [&] { return figures.seconds - seconds_before_stage; };
   const auto write_checkpoint = [&] {
-    auto saved = simulation->save();
-    results.write_checkpoint(stages ? stages->with_stages(std::move(saved), stage_seconds()) : saved);
+    auto saved = simulation->saved_state();
+    if (stages) saved = stages->with_stages(std::move(saved), stage_seconds());
+    results.write_checkpoint(saved, *simulation);
   };
   // Ends a stage of a run that removes particles, and sets out on the next one.
   const auto end_stage = [&] {

@@ -35,10 +35,12 @@ void refuse_moving_scenes(const Scene& scene) {
           fmt::format("body '{}' has an initial velocity, of which a static state knows nothing", body.name));
 }
 
-double largest_displacement(const Snapshot& s) {
+double largest_displacement(const ParticleReader& particles) {
   double largest = 0;
-  for (size_t i = 0; i < s.position.size(); ++i)
-    largest = std::max(largest, std::abs(s.position[i] - s.initial_position[i]));
+  particles.for_each_range(field::position | field::initial_position, [&](const Snapshot& s) {
+    for (size_t i = 0; i < s.position.size(); ++i)
+      largest = std::max(largest, std::abs(s.position[i] - s.initial_position[i]));
+  });
   return largest;
 }
 
@@ -93,7 +95,7 @@ RunResult run_static(const Scene& scene, const RunOptions& options) {
         "ones\n",
         solution.largest_strain);
 
-  if (const double moved = largest_displacement(simulation->snapshot()),
+  if (const double moved = largest_displacement(*simulation->read_particles()),
       h = shortest_edge(scene.grid, scene.dimension);
       moved > 0.1 * h && !options.progress_only)
     fmt::print(

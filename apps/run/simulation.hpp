@@ -12,7 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "run/place_particles.hpp"
+#include "run/byte_stream.hpp"
+#include "run/particle_reader.hpp"
 #include "scene/scene.hpp"
 
 namespace vsb::app {
@@ -30,25 +31,6 @@ struct Diverged : std::runtime_error {
 /// A static state that was not found; the text says how far it got.
 struct NotStatic : std::runtime_error {
   using std::runtime_error::runtime_error;
-};
-
-/// The particles at one moment. Vectors have 3 components per particle, stresses 6 (xx yy zz xy yz xz).
-struct Snapshot {
-  long long step = 0;
-  double time = 0;  ///< s
-  std::vector<std::int64_t> id;
-  std::vector<double> initial_position;    ///< m
-  std::vector<double> position, velocity;  ///< m, m/s
-  std::vector<double> cauchy_stress;       ///< Pa, tension positive
-  std::vector<double> volume, mass;        ///< m^3, kg
-  std::vector<unsigned char> in_boundary;  ///< 1 where a particle contributes to a node with a traction
-  std::vector<PlacedBody> bodies;          ///< which particles are whose
-  std::vector<double>
-      recovered_stress;  ///< as cauchy_stress; empty unless run/recovered_stress.hpp filled it
-
-  std::vector<double> plastic_strain;  ///< as cauchy_stress; empty unless a body is plastic
-
-  size_t count() const { return id.size(); }
 };
 
 /// The nodes at one moment, under the loads of that moment, and their velocity after another step; nodes
@@ -92,11 +74,10 @@ struct Restart {
   std::optional<double> damping;  ///< Cundall's alpha from now on, where it changes
 };
 
-/// The complete state of a run, bit by bit, for checkpoints.
+/// What the state of a run is beside the bits of its particles.
 struct SavedState {
   long long step = 0;
   size_t bytes_per_number = 0;
-  std::vector<unsigned char> particles;  ///< raw columns without padding, surface points, void filter
   StagedState staged;
 };
 
@@ -108,6 +89,8 @@ class Simulation {
 
   virtual int particle_count() const = 0;
   virtual long long step() const = 0;
+  /// Of the step, s.
+  virtual double time() const = 0;
   /// The time that the loads have acted, s: since the start, or since the last reset.
   virtual double load_time() const = 0;
   virtual int boundary_nodes() const = 0;
@@ -120,7 +103,7 @@ class Simulation {
   virtual std::vector<std::string> advice() const = 0;
   /// Why the scene is not run on cell lanes; empty where it is (run/lane_engine.hpp).
   virtual std::string particle_kernels_because() const = 0;
-  /// Memory of particles, nodes and occupancy.
+  /// Memory of particles, nodes and occupancy at present.
   virtual size_t state_bytes() const = 0;
 
   /// Makes `steps` steps. Throws Diverged when a particle leaves the grid.
@@ -130,11 +113,11 @@ class Simulation {
   /// load has no support.
   virtual StaticSolution solve_static(double t, const std::function<bool(int, double)>& go_on) = 0;
   /// Throws Diverged when a field of a particle is not finite or a volume is not positive.
-  virtual void check_health() const = 0;
+  virtual void check_health() = 0;
   /// The balance of the present state under the loads of the present or of a given time, s.
   virtual BalanceReport balance() = 0;
   virtual BalanceReport balance_under_loads_at(double t) = 0;
-  virtual Snapshot snapshot() = 0;
+  virtual std::unique_ptr<ParticleReader> read_particles() = 0;
   virtual GridSnapshot grid_snapshot() = 0;
   /// The equivalent plastic deviatoric strain (Eq. 34) of every particle, smoothed over the nodes or as it
   /// is. Zero in bodies that are not plastic.
@@ -146,13 +129,15 @@ class Simulation {
   virtual std::vector<CellContent> cell_contents(const std::vector<unsigned char>& marked) = 0;
   /// Removes the particles with a 1; those that stay keep order and ids. Steps are counted on.
   virtual void remove(const std::vector<unsigned char>& removed, const Restart& restart) = 0;
-  virtual SavedState save() const = 0;
+  virtual SavedState saved_state() const = 0;
+  /// The particles bit by bit: raw columns without padding, surface points, void filter.
+  virtual void save_particles(ByteSink& to) = 0;
   /// Throws SetupError where the saved state does not fit this scene.
-  virtual void restore(const SavedState& saved) = 0;
+  virtual void restore(const SavedState& saved, ByteSource& particles) = 0;
 };
 
-/// 64-bit FNV-1a of the saved particles, as 16 hexadecimal digits: equal for equal bits.
-std::string state_hash(const SavedState& saved);
+/// Of the saved particles; equal for equal bits.
+std::string state_hash(Simulation& simulation);
 
 /// Particles the scene will have; needs no Kokkos. Throws SetupError.
 int count_particles(const Scene& scene);

@@ -19,21 +19,22 @@ ExactMohrCoulombCylinder<double> solution_of(const YieldingCylinderComparison& c
   return {c.inner_radius, c.outer_radius, c.pressure, m.cohesion, m.friction_angle, m.poisson_ratio};
 }
 
-double plastic_radius(const YieldingCylinderComparison& c, const Snapshot& s) {
-  double yielded = 0, all = 0;
+void PlasticZone::add(const Snapshot& s) {
   for (size_t p = 0; p < s.count(); ++p) {
-    all += s.volume[p];
-    if (has_yielded(s, p)) yielded += s.volume[p];
+    all_ += s.volume[p];
+    if (!has_yielded(s, p)) continue;
+    yielded_ += s.volume[p];
+    furthest_ = std::max(furthest_, std::hypot(s.position[3 * p], s.position[3 * p + 1]));
   }
-  const double a2 = c.inner_radius * c.inner_radius, b2 = c.outer_radius * c.outer_radius;
-  return std::sqrt(a2 + yielded / all * (b2 - a2));
 }
 
-double plastic_reach(const YieldingCylinderComparison& c, const Snapshot& s) {
-  double reach = c.inner_radius;
-  for (size_t p = 0; p < s.count(); ++p)
-    if (has_yielded(s, p)) reach = std::max(reach, std::hypot(s.position[3 * p], s.position[3 * p + 1]));
-  return reach;
+double PlasticZone::radius(const YieldingCylinderComparison& c) const {
+  const double a2 = c.inner_radius * c.inner_radius, b2 = c.outer_radius * c.outer_radius;
+  return std::sqrt(a2 + yielded_ / all_ * (b2 - a2));
+}
+
+double PlasticZone::reach(const YieldingCylinderComparison& c) const {
+  return std::max(c.inner_radius, furthest_);
 }
 
 }  // namespace vsb::app

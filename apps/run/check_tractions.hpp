@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Refuses scenes whose tractions would not act as declared, or have no support.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <vsb/kernels/unsupported_load.hpp>
+#include "run/loads.hpp"
+#include "run/scene_grid.hpp"
+
+namespace vsb::app {
+
+/// Every traction must have boundary nodes or surface points, and the body must not touch an open face of the
+/// grid where one is declared: there are no void cells beyond a face, so part of the load would be missing
+/// without a word. Throws SetupError.
+template <class Basis, class Device, int Dim, class Real>
+void check_tractions(const Scene& scene, const Basis& basis, const Occupancy<Device>& occupancy,
+                     const Loads<Dim, Real>& loads, TractionMask on_surface, const PlacedParticles& placed) {
+  if (scene.tractions.empty()) return;
+  const auto boundary =
+      Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), occupancy.boundary, "vsb::boundary on host");
+  const auto declared =
+      Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), occupancy.tractions, "vsb::declared on host");
+  TractionMask acting = on_surface;
+  for (size_t node = 0; node < boundary.extent(0); ++node) acting |= boundary(node);
+  for (size_t k = 0; k < scene.tractions.size(); ++k) {
+    if (acting >> k & 1u) continue;
+    if (!(loads.on_nodes() >> k & 1u))
+      throw SetupError(fmt::format(
+          "traction '{}' finds no surface of a body{}, so it would load nothing: check its 'surface'",
+          scene.tractions[k].name,
+          scene.tractions[k].imposition == Imposition::nodal ? " that follows faces of cells" : ""));
+    throw SetupError(fmt::format(
+        "traction '{}' finds no boundary node, so it would load nothing. A boundary node belongs to a cell "
+        "without particles or to one that touches such a cell; leave at least one empty cell beyond the "
+        "loaded boundary (a smaller grid spacing, or a larger grid), or set method.fill_criterion, and check "
+        "the traction's 'surface'",
+        scene.tractions[k].name));
+  }
+  for (const Point& x : placed.position) {
+    const auto shape = basis.shape(to_vector<Dim, Real>(x));
+    for (int a = 0; a < Basis::support; ++a) {
+      const auto ijk = basis.grid.node_ijk(shape.node[a]);
+      if ((declared(static_cast<size_t>(shape.node[a])) & ~loads.conservative()) == 0) continue;
+      for (int i = 0; i < Dim; ++i) {
+        const auto& faces = scene.faces.fixed[static_cast<size_t>(i)];
+        const bool lower = ijk[i] == 0 && faces[0] == 0,
+                   upper = ijk[i] == basis.grid.cells[i] && faces[1] == 0;
+        if (lower || upper)
+          throw SetupError(fmt::format(
+              "a body reaches the open face {}_{} of the grid, where a traction is declared: leave at least "
+              "one empty cell between them, or give the face a condition, or the traction another 'surface'",
+              scene.grid.axis_name(static_cast<size_t>(i)), lower ? "min" : "max"));
+      }
+    }
+  }
+}
+
+/// Throws SetupError for a load of a static solution that nothing takes up.
+template <int Dim>
+void refuse_unsupported(const UnsupportedLoad<Dim>& load) {
+  if (!load.found) return;
+  const auto list = [](const auto& vector) {
+    std::string text;
+    for (int i = 0; i < vector.size; ++i) text += fmt::format("{}{:.4g}", i == 0 ? "" : ", ", vector[i]);
+    return text;
+  };
+  throw SetupError(fmt::format(
+      "--static: no support takes up a force of ({}) N{} on the body around ({}) m, {:.2g} of its nodal "
+      "forces, so there is no static state: hold the body at a face of the grid ('faces'), or balance its "
+      "loads",
+      list(load.force), Dim > 1 ? fmt::format(" and a torque of ({}) N m", list(load.torque)) : "",
+      list(load.middle), load.share));
+}
+
+}  // namespace vsb::app

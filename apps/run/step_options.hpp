@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// What of a scene a step takes as it is.
+#pragma once
+
+#include <vsb/kernels/step.hpp>
+#include "scene/scene.hpp"
+
+namespace vsb::app {
+
+template <int Dim, class Real>
+StepOptions<Dim, Real> step_options(const Scene& scene) {
+  StepOptions<Dim, Real> options{};
+  options.dt = static_cast<Real>(scene.time.dt);
+  options.damping = static_cast<Real>(scene.method.damping);
+  for (int i = 0; i < Dim; ++i) options.gravity[i] = static_cast<Real>(scene.gravity[static_cast<size_t>(i)]);
+  if (scene.method.volume_update == "exponential") options.volume_update = ExponentialVolume{};
+  options.scatter = scene.method.scatter == "atomic"       ? Scatter::atomic
+                    : scene.method.scatter == "duplicated" ? Scatter::duplicated
+                                                           : Scatter::gathered;
+  return options;
+}
+
+}  // namespace vsb::app
