@@ -63,7 +63,7 @@ LaneEngine<Dim, Real>::LaneEngine(const Setup& setup, const SurfacePoints<Dim, R
 
 template <int Dim, class Real>
 void LaneEngine<Dim, Real>::pack(ParticleBlock<Dim, Real, Device> block) {
-  pack_lanes(exec_, block.particles, state_);
+  pack_lanes(exec_, std::move(block), state_);
 }
 
 template <int Dim, class Real>
@@ -162,10 +162,12 @@ size_t LaneEngine<Dim, Real>::bytes() const {
   const auto& n = state_.memory.nodes;
   const auto& b = state_.boundary;
   const auto& p = state_.surface;
-  return bytes(l.data, l.id, l.held, l.mass_matrices, l.groups, l.layer_first, l.plane_first, l.group_at,
-               l.chunk_at, n.data, n.fixed, b.bits.occupied, b.bits.exterior, b.bits.boundary, b.marked,
-               b.active, b.tractions, p.cell, p.xi, p.area, p.tractions, p.carrier, p.order, p.run_cell,
-               p.run_first, p.cell_count);
+  const size_t columns = static_cast<size_t>(l.slot_count) * l.width * static_cast<size_t>(l.columns());
+  return columns * sizeof(Real) + bytes(l.id, l.held, l.mass_matrices, l.groups, l.layer_first, l.plane_first,
+                                        l.group_at, l.chunk_at, n.data, n.fixed, b.bits.occupied,
+                                        b.bits.exterior, b.bits.boundary, b.marked, b.active, b.tractions,
+                                        p.cell, p.xi, p.area, p.tractions, p.carrier, p.order, p.run_cell,
+                                        p.run_first, p.cell_count);
 }
 
 template <int Dim, class Real>

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <vsb/kernels/build_lanes.hpp>
 #include <vsb/kernels/update_stress.hpp>
 #include <vsb/views/particles.hpp>
 #include "run/material_of.hpp"
@@ -33,12 +34,15 @@ std::vector<Body<Real>> bodies_of(const Scene& scene, const PlacedParticles& pla
   return bodies;
 }
 
-/// Zero-filled particles of these bodies, with the material state that they need.
+/// Zero-filled particles of these bodies, with the material state that they need; `to_pack`: to become those
+/// of cell lanes.
 template <int Dim, class Real, class Device>
-ParticleBlock<Dim, Real, Device> allocate_bodies(std::vector<Body<Real>> bodies) {
-  auto block = allocate_particles<Dim, Real, Device>(bodies.back().last);
+ParticleBlock<Dim, Real, Device> allocate_bodies(std::vector<Body<Real>> bodies, bool to_pack) {
   int columns = 0;
   for (const auto& body : bodies) columns = std::max(columns, state_size<Dim>(body.material));
+  const int count = bodies.back().last;
+  auto block = to_pack ? allocate_particles_to_pack<Dim, Real, Device>(count, columns)
+                       : allocate_particles<Dim, Real, Device>(count);
   if (const int rows = number_states<Dim>(bodies); rows > 0) allocate_material_state(block, rows, columns);
   return block;
 }

@@ -50,6 +50,7 @@ class SimulationOf final : public Simulation {
     resultants_ = exact_resultants(scene_);
     options_ = step_options<Dim, Real>(scene_);
 
+    particle_kernels_because_ = reason_for_particle_kernels(scene_);
     memory_ = allocate_memory();
     fill_particles(scene_, placed, ids_, bodies_, memory_->block);
     auto& occupancy = memory_->state.occupancy;
@@ -60,7 +61,6 @@ class SimulationOf final : public Simulation {
     }
     locate();
     check_tractions(scene_, basis_, occupancy, loads_, surface.tractions, placed);
-    particle_kernels_because_ = reason_for_particle_kernels(scene_);
     auto inside = occupied_cells(scene_, basis_, placed);
     if (scene.method.void_filter) add_voids<Device>(scene_, basis_, occupancy.cells.outside, inside);
     advice_ = field_advice(scene_, placed, inside);
@@ -93,11 +93,13 @@ class SimulationOf final : public Simulation {
     const auto& [block, state] = *memory_;
     const auto& o = state.occupancy;
     const auto& n = state.nodes;
-    return sum + bytes(block.block, block.state_block, n.sums, n.acceleration, n.velocity,
-                       n.remapped_velocity, n.fixed_components, o.bins.bin, o.bins.order, o.bins.offset,
-                       o.bins.cursor, o.bins.slot, o.bins.occupied, o.cells.occupied, o.cells.exterior,
-                       o.cells.boundary, o.cells.underfilled, o.cells.outside, o.boundary,
-                       state.sums_workspace.particles.bin_sums, state.remap_workspace.bin_sums);
+    const auto particles = static_cast<size_t>(block.particles.count() * block.columns()) * sizeof(Real);
+    return sum + particles +
+           bytes(block.state_block, n.sums, n.acceleration, n.velocity, n.remapped_velocity,
+                 n.fixed_components, o.bins.bin, o.bins.order, o.bins.offset, o.bins.cursor, o.bins.slot,
+                 o.bins.occupied, o.cells.occupied, o.cells.exterior, o.cells.boundary, o.cells.underfilled,
+                 o.cells.outside, o.boundary, state.sums_workspace.particles.bin_sums,
+                 state.remap_workspace.bin_sums);
   }
 
   void advance(long long steps) override {
@@ -304,7 +306,8 @@ class SimulationOf final : public Simulation {
   /// Of the particles there are, all at zero.
   std::unique_ptr<Memory> allocate_memory() const {
     auto memory = std::make_unique<Memory>();
-    memory->block = allocate_bodies<Dim, Real, Device>(bodies_);
+    memory->block =
+        allocate_bodies<Dim, Real, Device>(bodies_, has_lanes && particle_kernels_because_.empty());
     auto& state = memory->state;
     state = make_state(memory->block.particles, basis_);
     fix_faces(scene_, basis_, state.nodes.fixed_components);
