@@ -48,8 +48,7 @@ struct CostFields {
 template <class Real>
 void mark_anew(Lane<3, Real>& s) {
   auto& b = s.boundary;
-  if constexpr (std::is_same<typename Device::memory_space, Kokkos::HostSpace>::value)
-    b.marked(b.marked.extent(0) / 2, 0) ^= 1;
+  b.marked(b.marked.extent(0) / 2, 0) ^= 1;
   update_occupied(Exec(), s.memory.lanes, b);
   mark_lanes(Exec(), s.memory.lanes, s.memory.grid.cells, b, false);
 }

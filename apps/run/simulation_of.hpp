@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstring>
 
 #include <vsb/kernels/balance.hpp>
@@ -34,6 +35,7 @@ class SimulationOf final : public Simulation {
         placed_(place_particles(scene)),
         owned_basis_(scene),
         basis_(owned_basis_.basis),
+        on_host_(basis_on_host(scene, owned_basis_)),
         loads_(scene) {
     if (!scene.grid.mapped() && Basis::reach == 0) refuse_on_grid_lines(scene, placed_);
     block_ = allocate_particles<Dim, Real, Device>(static_cast<int>(placed_.position.size()));
@@ -44,7 +46,7 @@ class SimulationOf final : public Simulation {
     if (scene.method.fill_criterion > 0) set_fill_criterion(state_.occupancy, scene.method.fill_criterion);
     if (scene.method.void_filter) {
       set_void_filter(state_.occupancy, basis_);
-      remove_body_cells<Device>(scene, basis_.grid, state_.occupancy.cells.outside);
+      remove_body_cells<Device>(scene, on_host_.basis.grid, state_.occupancy.cells.outside);
     }
     fix_faces();
     declare_tractions();
@@ -254,7 +256,7 @@ class SimulationOf final : public Simulation {
     std::vector<int> surplus(cells, 0);  // of marked particles
     std::vector<CellContent> contents(cells, CellContent::nothing);
     for (int p = 0; p < particle_count(); ++p) {
-      const auto cell = basis_.grid.cell_containing(host.particles.position_of(p));
+      const auto cell = on_host_.basis.grid.cell_containing(host.particles.position_of(p));
       int index = 0;
       for (int i = Dim - 1; i >= 0; --i)
         index = index * scene_.grid.cells[static_cast<size_t>(i)] + (cell[i] - Basis::reach);
@@ -319,7 +321,7 @@ class SimulationOf final : public Simulation {
       std::memcpy(to, column, bytes);
       to += bytes;
     });
-    for (const auto& field : {state_.surface.position, state_.surface.area}) {
+    for (const auto& field : surface_fields()) {
       const auto on_host =
           Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), field, "vsb::surface on host");
       if (field.span() == 0) continue;
@@ -345,7 +347,7 @@ class SimulationOf final : public Simulation {
       from += bytes;
     });
     copy_to_device(host, block_);
-    for (const auto& field : {state_.surface.position, state_.surface.area}) {
+    for (const auto& field : surface_fields()) {
       if (field.span() == 0) continue;
       const auto on_host = Kokkos::create_mirror_view(field);
       std::memcpy(on_host.data(), from, field.span() * sizeof(Real));
@@ -372,6 +374,12 @@ class SimulationOf final : public Simulation {
     };
     columns(host.block, host.particles.mass.extent(0));
     columns(host.state_block, host.particles.material_state.extent(0));
+  }
+
+  /// Those of the surface points that a saved state has.
+  auto surface_fields() const {
+    return std::array<typename SurfacePoints<Dim, Real, Device>::Fields, 2>{state_.surface.position,
+                                                                            state_.surface.area};
   }
 
   /// Bytes of a saved state: the columns of the particles and of their material states, positions and areas
@@ -444,7 +452,7 @@ class SimulationOf final : public Simulation {
     loads_begin_ = staged.loads_begin;
   }
 
-  static constexpr bool has_lanes = std::is_same_v<Basis, LinearBasis<Dim, Real>>;
+  static constexpr bool has_lanes = runs_on_host && std::is_same_v<Basis, LinearBasis<Dim, Real>>;
 
   /// Packs the particles into cell lanes.
   void pack() {
@@ -634,7 +642,7 @@ class SimulationOf final : public Simulation {
     }
     cells.occupied.resize(count);
     for (const Point& x : placed_.position) {
-      const auto cell = basis_.grid.cell_containing(to_vector(x));
+      const auto cell = on_host_.basis.grid.cell_containing(to_vector(x));
       int index = 0;
       for (int i = Dim - 1; i >= 0; --i)
         index = index * cells.cells[static_cast<size_t>(i)] + (cell[i] - Basis::reach);
@@ -668,7 +676,7 @@ class SimulationOf final : public Simulation {
   /// The points of the tractions that are not imposed through boundary nodes.
   void place_surface_points() {
     auto points = loaded_points(scene_, placed_);
-    const auto conforming = conforming_points<Dim>(scene_, basis_.grid, occupied_cells().occupied);
+    const auto conforming = conforming_points<Dim>(scene_, on_host_.basis.grid, occupied_cells().occupied);
     points.insert(points.end(), conforming.begin(), conforming.end());
     if (points.empty()) return;
     auto& s = state_.surface;
@@ -726,7 +734,7 @@ class SimulationOf final : public Simulation {
           scene_.tractions[k].name));
     }
     for (size_t p = 0; p < placed_.position.size(); ++p) {
-      const auto shape = basis_.shape(to_vector(placed_.position[p]));
+      const auto shape = on_host_.basis.shape(to_vector(placed_.position[p]));
       for (int a = 0; a < Basis::support; ++a) {
         const auto ijk = basis_.grid.node_ijk(shape.node[a]);
         if ((declared(static_cast<size_t>(shape.node[a])) & ~loads_.conservative()) == 0) continue;
@@ -786,6 +794,7 @@ class SimulationOf final : public Simulation {
   ExecutionSpace exec_;
   OwnedBasis<Basis> owned_basis_;
   Basis basis_;
+  decltype(basis_on_host(std::declval<const Scene&>(), std::declval<const OwnedBasis<Basis>&>())) on_host_;
   Loads<Dim, Real> loads_;
   std::vector<Resultant> resultants_;  ///< of each traction at full load
   TractionMask surface_tractions_ = 0;

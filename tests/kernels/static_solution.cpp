@@ -111,7 +111,8 @@ void check_stiffness(const Basis& basis) {
              Kv = nodal_vectors<Dim>(nodes);
   Random random(92);
   for (int trial = 0; trial < 20; ++trial) {
-    for (const auto& vectors : {u, v})
+    const typename Nodes<Dim, double, Device>::Fields both[] = {u, v};
+    for (const auto& vectors : both)
       edit(vectors, [&](const auto& host) {
         for (int I = 0; I < nodes; ++I)
           for (int i = 0; i < Dim; ++i) host(I, i) = random(-1, 1);
