@@ -7,7 +7,6 @@
 #include "cost_measurements.hpp"
 #include "cost_options.hpp"
 #include "cost_record.hpp"
-#include "flops.hpp"
 #include "machine_rates.hpp"
 
 #include <cmath>
@@ -23,7 +22,6 @@ namespace {
 struct Row {
   CostCase what;
   const char* real;
-  int word;
   Record found;
 };
 
@@ -40,17 +38,9 @@ void progress(const std::string& text) {
   std::fprintf(stderr, "vsb_cost: %s\n", text.c_str());
 }
 
-/// Flops per particle and step, the work per cell shared out over its particles.
-double flops(const Size& size) {
-  static const auto count = count_step_flops<3>();
-  return count.per_particle + count.per_cell / std::pow(size.per_direction, 3);
-}
-
 /// Adds the shares of the machine's rates.
 void add_shares(Row& row, const Record& rates) {
   const double ns = row.found["base ns"];
-  row.found.set("flops", flops(row.what.size));
-  row.found.set("least bytes", step_words<3>() * row.word);
   row.found.set("share of FMA %", 100 * row.found["flops"] / ns / rates["fma GF/s"]);
   row.found.set("share of stream %", 100 * row.found["least bytes"] / ns / rates["stream GB/s"]);
 }
@@ -74,7 +64,7 @@ void add_speed_up(Row& row, const CostOptions& o) {
 template <class Real>
 Row measure(const CostCase& what, const CostOptions& o, const Record& rates) {
   const int kind = sizeof(Real) == 8 ? 0 : 1;
-  Row row{what, real_name[kind], static_cast<int>(sizeof(Real)), {}};
+  Row row{what, real_name[kind], {}};
   progress(what.name + ", " + row.real);
   if (runs_on_host) {
     row.found =

@@ -5,10 +5,12 @@
 
 #include "cost_cases.hpp"
 #include "cost_record.hpp"
+#include "flops.hpp"
 #include "lane_checks.hpp"
 #include "rounds.hpp"
 #include "surface_scene.hpp"
 
+#include <cmath>
 #include <vsb/kernels/lane_loads.hpp>
 #include <vsb/physics/traction_fields.hpp>
 
@@ -157,6 +159,10 @@ void measure_engine(const CostCase& what, int axis, int repeats, Record& record)
   }
   record.set("base ns", 1e9 * median(base) / particles);
   record.set("base 10 % ns", 1e9 * quantile(base, 0.1) / particles);
+  // Per particle, the work per cell shared out over its particles.
+  const auto count = count_step_flops<3>();
+  record.set("flops", count.per_particle + count.per_cell / std::pow(what.size.per_direction, 3));
+  record.set("least bytes", step_words<3>() * static_cast<int>(sizeof(Real)));
 }
 
 /// The base alone, for the speed-up by threads: wall time.

@@ -140,7 +140,7 @@ endmacro()
 
 # Kokkos itself sends what needs it through its nvcc_wrapper, which looks for nvcc in these two places.
 if(VSB_BACKEND STREQUAL "Cuda" AND NOT TARGET Kokkos::kokkos)
-  if("${CMAKE_CXX_COMPILER}" MATCHES "nvcc")
+  if(VSB_BUILD_APPS AND "${CMAKE_CXX_COMPILER}" MATCHES "nvcc")
     message(FATAL_ERROR "vsb: CMAKE_CXX_COMPILER is ${CMAKE_CXX_COMPILER}; leave it at the host's compiler (g++). Kokkos "
                         "sends the sources that need it through nvcc; the others do not compile with nvcc.")
   endif()
