@@ -6,19 +6,16 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
-#include <vsb/views/kokkos_compat.hpp>
 
 #include "files/build_info.hpp"
 #include "files/hdf5_file.hpp"
+#include "run/kokkos_session.hpp"
 #include "run/run_scene.hpp"
 #include "run/simulation.hpp"
-#include "scene/toml_reader.hpp"
+#include "scene/scene_error.hpp"
 #include "study/read_study.hpp"
 #include "study/run_study.hpp"
 
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
@@ -26,41 +23,6 @@
 namespace {
 
 using namespace vsb::app;
-
-/// Throws SceneError for more threads than the backend has.
-void check_threads([[maybe_unused]] int threads) {
-#if !(defined(_OPENMP) && defined(VSB_BACKEND_OPENMP))
-  if (threads > 1) throw SceneError("--threads: this program was built for a backend without threads; use 1");
-#endif
-}
-
-/// Kokkos for the lifetime of the object, with this many threads (0: OMP_NUM_THREADS, or all cores).
-class KokkosSession {
- public:
-  explicit KokkosSession(int threads) {
-    // Kokkos warns when nobody has decided about binding; threads of a desktop program are best left unbound.
-    setenv("OMP_PROC_BIND", "false", 0);
-    check_threads(threads);
-#if defined(_OPENMP) && defined(VSB_BACKEND_OPENMP)
-    if (threads > 0) omp_set_num_threads(threads);
-#endif
-    Kokkos::initialize();
-  }
-  ~KokkosSession() {
-    Kokkos::finalize();
-  }
-  KokkosSession(const KokkosSession&) = delete;
-  KokkosSession& operator=(const KokkosSession&) = delete;
-};
-
-/// Threads that pay: below ten thousand particles each, starting a kernel costs more than it saves.
-int useful_threads(int particles) {
-#if defined(_OPENMP) && defined(VSB_BACKEND_OPENMP)
-  return std::clamp(particles / 10000, 1, omp_get_max_threads());
-#else
-  return particles > 0 ? 1 : 0;
-#endif
-}
 
 /// What --threads asks for, else OMP_NUM_THREADS (0 here), else as many as pay.
 int threads_for(const Scene& scene, int asked) {
@@ -78,9 +40,7 @@ void give_back_large_arrays() {
 void print_info() {
   fmt::print("vsb\n");
   for (const auto& [name, value] : build_info()) fmt::print("  {:<16} {}\n", name, value);
-#if defined(_OPENMP) && defined(VSB_BACKEND_OPENMP)
-  fmt::print("  {:<16} {}\n", "threads", omp_get_max_threads());
-#endif
+  if (threads_at_hand() > 0) fmt::print("  {:<16} {}\n", "threads", threads_at_hand());
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace vsb::bench {
 
 /// Whether other threads than the caller's, or a device, do the work: then wall time counts, not CPU time.
 inline bool works_elsewhere() {
-  return Exec().concurrency() > 1 || !std::is_same<typename Device::memory_space, Kokkos::HostSpace>::value;
+  return Exec().concurrency() > 1 || !runs_on_host;
 }
 
 /// Seconds: of the process's CPU time where one thread does all the work, else of wall time.

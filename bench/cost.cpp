@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// vsb_cost: what a step on cell lanes costs in time and memory, and what a traction adds to it, beside the
-/// paper's Table 3. See README.md.
+/// paper's Table 3; on a device, where there are no cell lanes, of the particle kernels. See README.md.
 
 #include "context.hpp"
 #include "cost_measurements.hpp"
 #include "cost_options.hpp"
 #include "cost_record.hpp"
-#include "flops.hpp"
 #include "machine_rates.hpp"
 
 #include <cmath>
@@ -23,7 +22,6 @@ namespace {
 struct Row {
   CostCase what;
   const char* real;
-  int word;
   Record found;
 };
 
@@ -40,17 +38,9 @@ void progress(const std::string& text) {
   std::fprintf(stderr, "vsb_cost: %s\n", text.c_str());
 }
 
-/// Flops per particle and step, the work per cell shared out over its particles.
-double flops(const Size& size) {
-  static const auto count = count_step_flops<3>();
-  return count.per_particle + count.per_cell / std::pow(size.per_direction, 3);
-}
-
 /// Adds the shares of the machine's rates.
 void add_shares(Row& row, const Record& rates) {
   const double ns = row.found["base ns"];
-  row.found.set("flops", flops(row.what.size));
-  row.found.set("least bytes", step_words<3>() * row.word);
   row.found.set("share of FMA %", 100 * row.found["flops"] / ns / rates["fma GF/s"]);
   row.found.set("share of stream %", 100 * row.found["least bytes"] / ns / rates["stream GB/s"]);
 }
@@ -74,11 +64,14 @@ void add_speed_up(Row& row, const CostOptions& o) {
 template <class Real>
 Row measure(const CostCase& what, const CostOptions& o, const Record& rates) {
   const int kind = sizeof(Real) == 8 ? 0 : 1;
-  Row row{what, real_name[kind], static_cast<int>(sizeof(Real)), {}};
+  Row row{what, real_name[kind], {}};
   progress(what.name + ", " + row.real);
-  row.found = in_child(o.threads, [&](Record& r) { Measurements<Real>::engine(what, o.axis, o.repeats, r); });
-  add_shares(row, rates);
-  if (o.naive) {
+  if (runs_on_host) {
+    row.found =
+        in_child(o.threads, [&](Record& r) { Measurements<Real>::engine(what, o.axis, o.repeats, r); });
+    add_shares(row, rates);
+  }
+  if (o.naive || !runs_on_host) {
     progress(what.name + ", " + row.real + ", particle kernels");
     const auto kernels =
         in_child(o.threads, [&](Record& r) { Measurements<Real>::kernels(what, o.axis, o.repeats, r); });
@@ -124,13 +117,11 @@ void print_extras(const Record& r, const std::string& title, const std::vector<s
   }
 }
 
-void print(const Row& row) {
+/// The part of a row that is about cell lanes.
+void print_engine(const Row& row) {
   const auto& r = row.found;
-  const auto& p = row.what.row;
-  std::printf("\n%s, %s: %d particles, %d per cell\n", row.what.name.c_str(), row.real,
-              particle_count<3>(row.what.size), static_cast<int>(std::pow(row.what.size.per_direction, 3)));
   std::printf("  base %.2f ns per particle and step (10 %% quantile %.2f)", r["base ns"], r["base 10 % ns"]);
-  if (row.what.has_row) std::printf("; the paper: %.0f ns", 1000 * p.base_us);
+  if (row.what.has_row) std::printf("; the paper: %.0f ns", 1000 * row.what.row.base_us);
   std::printf(
       "\n  %.0f flops: %.0f %% of the FMA rate; at least %.0f bytes: %.0f %% of the stream rate of memory\n",
       r["flops"], r["share of FMA %"], r["least bytes"], r["share of stream %"]);
@@ -143,15 +134,28 @@ void print(const Row& row) {
                 "tensor, marked", "affine", "affine, marked", "function", "function, marked"},
                "end face", "all faces");
   print_extras(r, "extra by other impositions", {"MP", "BP", "ORIG"}, "end face", "all faces");
-  if (r.has("kernels base ns")) {
-    std::printf(
-        "  particle kernels: base %.1f ns (10 %% quantile %.1f); engine %.1f times faster, with pressure "
-        "on all faces %.1f times\n",
-        r["kernels base ns"], r["kernels base 10 % ns"], r["particle kernels / engine, base"],
-        r["particle kernels / engine, MOD"]);
-    print_extras(r, "extra, particle kernels", {"null", "MP", "BP", "ORIG", "MOD"}, "kernels, end face",
-                 "kernels, all faces");
-  }
+}
+
+/// The part about the particle kernels.
+void print_kernels(const Row& row) {
+  const auto& r = row.found;
+  std::printf("  particle kernels: base %.1f ns (10 %% quantile %.1f)", r["kernels base ns"],
+              r["kernels base 10 % ns"]);
+  if (r.has("base ns"))
+    std::printf("; engine %.1f times faster, with pressure on all faces %.1f times",
+                r["particle kernels / engine, base"], r["particle kernels / engine, MOD"]);
+  std::printf("\n");
+  print_extras(r, "extra, particle kernels", {"null", "MP", "BP", "ORIG", "MOD"}, "kernels, end face",
+               "kernels, all faces");
+}
+
+void print(const Row& row) {
+  const auto& r = row.found;
+  const auto& p = row.what.row;
+  std::printf("\n%s, %s: %d particles, %d per cell\n", row.what.name.c_str(), row.real,
+              particle_count<3>(row.what.size), static_cast<int>(std::pow(row.what.size.per_direction, 3)));
+  if (r.has("base ns")) print_engine(row);
+  if (r.has("kernels base ns")) print_kernels(row);
   if (row.what.has_row)
     std::printf("  the paper, end face: MP %+.2f %%  BP %+.2f %%  ORIG %+.2f %%  MOD %+.2f %%\n", p.MP, p.BP,
                 p.ORIG, p.MOD);
@@ -253,7 +257,7 @@ void run(const CostOptions& options) {
       report.rows.push_back(measure<float>(what, options, report.rates[1]));
       print(report.rows.back());
     }
-    if (name == "80k") {
+    if (name == "80k" && runs_on_host) {
       report.flows[0] = measure_flows<double>(options);
       print_flows(report.flows[0], real_name[0]);
       report.flows[1] = measure_flows<float>(options);

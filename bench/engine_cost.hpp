@@ -5,10 +5,12 @@
 
 #include "cost_cases.hpp"
 #include "cost_record.hpp"
+#include "flops.hpp"
 #include "lane_checks.hpp"
 #include "rounds.hpp"
 #include "surface_scene.hpp"
 
+#include <cmath>
 #include <vsb/kernels/lane_loads.hpp>
 #include <vsb/physics/traction_fields.hpp>
 
@@ -49,8 +51,7 @@ struct CostFields {
 template <class Real>
 void mark_anew(Lane<3, Real>& s) {
   auto& b = s.boundary;
-  if constexpr (std::is_same<typename Device::memory_space, Kokkos::HostSpace>::value)
-    b.marked(b.marked.extent(0) / 2, 0) ^= 1;
+  b.marked(b.marked.extent(0) / 2, 0) ^= 1;
   update_occupied(Exec(), s.memory.lanes, b);
   mark_lanes(Exec(), s.memory.lanes, s.memory.grid.cells, b, false);
 }
@@ -176,6 +177,10 @@ void measure_engine(const CostCase& what, int axis, int repeats, Record& record)
   measure_sweeps(column, s, rounds_for(what.size, repeats), record);
   record.set("base ns", 1e9 * median(base) / particles);
   record.set("base 10 % ns", 1e9 * quantile(base, 0.1) / particles);
+  // Per particle, the work per cell shared out over its particles.
+  const auto count = count_step_flops<3>();
+  record.set("flops", count.per_particle + count.per_cell / std::pow(what.size.per_direction, 3));
+  record.set("least bytes", step_words<3>() * static_cast<int>(sizeof(Real)));
 }
 
 /// The base alone, for the speed-up by threads: wall time.

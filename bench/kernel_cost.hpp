@@ -37,14 +37,10 @@ Rounds measure_impositions(Scene<3, Real>& s, int rounds) {
                           rounds);
 }
 
+/// How many times as long as a step on cell lanes one of the particle kernels takes.
 template <class Real>
-void measure_kernels(const CostCase& what, int axis, int repeats, Record& record) {
-  auto scene = make_scene<3, Real>(what.size, Load::free_faces, Scatter::gathered, axis);
+void compare_engines(Scene<3, Real>& scene, int rounds, Record& record) {
   auto lanes = make_lanes(scene);
-  const int particles = particle_count<3>(what.size),
-            rounds = std::max(5, rounds_for(what.size, repeats) / 4);
-  const auto findings = check_step(scene, [&] { step(scene, scene.virtual_stress); });
-  if (!findings.empty()) throw std::runtime_error(what.name + ", particle kernels: " + findings);
   for (const bool loaded : {false, true}) {
     std::vector<double> ratio;
     const auto run = [&](const auto& field) {
@@ -60,6 +56,16 @@ void measure_kernels(const CostCase& what, int axis, int repeats, Record& record
       run(NoVirtualStress{});
     record.set(loaded ? "particle kernels / engine, MOD" : "particle kernels / engine, base", median(ratio));
   }
+}
+
+template <class Real>
+void measure_kernels(const CostCase& what, int axis, int repeats, Record& record) {
+  auto scene = make_scene<3, Real>(what.size, Load::free_faces, Scatter::gathered, axis);
+  const int particles = particle_count<3>(what.size),
+            rounds = std::max(5, rounds_for(what.size, repeats) / 4);
+  const auto findings = check_step(scene, [&] { step(scene, scene.virtual_stress); });
+  if (!findings.empty()) throw std::runtime_error(what.name + ", particle kernels: " + findings);
+  if constexpr (runs_on_host) compare_engines(scene, rounds, record);
   std::vector<double> base;
   for (const Load load : {Load::end_face, Load::free_faces}) {
     apply_load(scene, load);

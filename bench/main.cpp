@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
   register_kernels();
   register_steps();
   register_extra_cost();
-  register_lanes();
+  if constexpr (runs_on_host) register_lanes();
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   Kokkos::finalize();

@@ -41,8 +41,7 @@ void for_each_scene(const Work& work) {
 }
 
 inline std::vector<Scatter> strategies() {
-  if (std::is_same<typename Device::memory_space, Kokkos::HostSpace>::value)
-    return {Scatter::gathered, Scatter::duplicated, Scatter::atomic};
+  if (runs_on_host) return {Scatter::gathered, Scatter::duplicated, Scatter::atomic};
   return {Scatter::gathered, Scatter::atomic};
 }
 

@@ -29,6 +29,9 @@ using Exec = Kokkos::Serial;
 #endif
 using Device = Exec::device_type;
 
+/// Whether that is the host: on a device there are the particle kernels alone.
+constexpr bool runs_on_host = std::is_same_v<Device::memory_space, Kokkos::HostSpace>;
+
 /// Where the virtual stress acts.
 enum class Load { off, end_face, free_faces };
 

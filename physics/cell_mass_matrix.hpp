@@ -22,7 +22,7 @@ using CellMassMatrix = Vector<(Dim == 1   ? 3
                               T>;
 
 namespace detail {
-constexpr int number_in_mass_matrix(int a, int b, int dim) {
+KOKKOS_INLINE_FUNCTION constexpr int number_in_mass_matrix(int a, int b, int dim) {
   int number = 0, power = 1;
   for (int i = 0; i < dim; ++i, power *= 3) number += power * ((a >> i & 1) + (b >> i & 1));
   return number;

@@ -66,7 +66,7 @@ struct DruckerPrager {
 
   /// Numbers to remember per particle: the plastic strain and kappa.
   template <int Dim>
-  static constexpr int state_size() {
+  KOKKOS_FUNCTION static constexpr int state_size() {
     return symmetric_components(Dim) + 1;
   }
 

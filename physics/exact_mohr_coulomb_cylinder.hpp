@@ -12,7 +12,6 @@
 /// The dilation angle does not matter to the stresses.
 #pragma once
 
-#include <limits>
 #include <vsb/physics/polar.hpp>
 
 namespace vsb {
@@ -60,7 +59,7 @@ struct ExactMohrCoulombCylinder {
   T largest_pressure() const {
     const T sine = math::sin(friction_angle), nu = poisson_ratio;
     const T share = (1 - nu) * (1 - sine) - nu * (1 + sine);
-    if (!(share > 0)) return std::numeric_limits<T>::infinity();
+    if (!(share > 0)) return math::infinity<T>;
     return 2 * (1 - nu) * cohesion * math::cos(friction_angle) / share;
   }
 

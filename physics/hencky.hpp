@@ -45,7 +45,7 @@ struct Hencky {
 
   /// Numbers to remember per particle: H, row by row.
   template <int Dim>
-  static constexpr int state_size() {
+  KOKKOS_FUNCTION static constexpr int state_size() {
     return Dim * Dim;
   }
 

@@ -32,7 +32,7 @@ struct LinearElastic {
 
   /// Numbers to remember per particle.
   template <int Dim>
-  static constexpr int state_size() {
+  KOKKOS_FUNCTION static constexpr int state_size() {
     return 0;
   }
 

@@ -62,7 +62,7 @@ struct MohrCoulomb {
 
   /// Numbers to remember per particle: the plastic strain.
   template <int Dim>
-  static constexpr int state_size() {
+  KOKKOS_FUNCTION static constexpr int state_size() {
     return symmetric_components(Dim);
   }
 

@@ -12,7 +12,6 @@
 /// energy norm.
 #pragma once
 
-#include <limits>
 #include <vsb/views/tensor.hpp>
 
 namespace vsb {
@@ -45,7 +44,7 @@ struct MohrCoulombSurface {
       return s;
     // The apex, also where the flow directions do not lead there (psi = 0): no other state is admissible.
     const Real vertex = math::min(apex, tensile_strength);
-    return vertex < std::numeric_limits<Real>::infinity() ? Vector<3, Real>{{vertex, vertex, vertex}} : trial;
+    return vertex < math::infinity<Real> ? Vector<3, Real>{{vertex, vertex, vertex}} : trial;
   }
 
  private:
@@ -87,8 +86,7 @@ struct MohrCoulombSurface {
     for (int i = 0; i < Count; ++i)
       for (int j = 0; j < Count; ++j) A(i, j) = dot(normal[i], step[j]);
     const auto multiplier = inverse(A) * excess;
-    const Real round_off =
-        64 * std::numeric_limits<Real>::epsilon() * (math::abs(trial[0]) + math::abs(trial[2]) + strength);
+    const Real round_off = 64 * math::epsilon<Real> * (math::abs(trial[0]) + math::abs(trial[2]) + strength);
     s = trial;
     for (int j = 0; j < Count; ++j) {
       if (!(multiplier[j] >= -round_off)) return false;

@@ -6,7 +6,6 @@
 /// hexahedron whose faces may be warped.
 #pragma once
 
-#include <limits>
 #include <vsb/views/tensor.hpp>
 
 namespace vsb {
@@ -83,7 +82,6 @@ struct MultilinearCell {
   /// longer moves, that is, when x lies beyond a face.
   KOKKOS_FORCEINLINE_FUNCTION Inverse inverse(const Vector<Dim, T>& x) const {
     constexpr int most_iterations = 32;
-    constexpr T epsilon = std::numeric_limits<T>::epsilon();
     Vector<Dim, T> c[corners];
     coefficients(c);
     c[0] -= x;
@@ -105,7 +103,7 @@ struct MultilinearCell {
         xi[i] = next;
       }
       // Convergence is quadratic: after a step of sqrt(epsilon), round-off remains.
-      if (length * length <= epsilon) {
+      if (length * length <= math::epsilon<T>) {
         result.converged = true;
         break;
       }

@@ -51,8 +51,7 @@ struct NearestNodeBasis {
   KOKKOS_FUNCTION bool contains(const Position& x) const {
     const auto q = grid.in_cells(x);
     for (int i = 0; i < Dim; ++i) {
-      const Real n = static_cast<Real>(grid.cells[i]),
-                 round_off = 16 * n * std::numeric_limits<Real>::epsilon();
+      const Real n = static_cast<Real>(grid.cells[i]), round_off = 16 * n * math::epsilon<Real>;
       if (!(q[i] >= 1 - round_off && q[i] <= n - 1 + round_off)) return false;
     }
     return true;

@@ -13,10 +13,9 @@ namespace vsb {
 template <int Dim, class Real>
 KOKKOS_INLINE_FUNCTION bool to_next_cell(const UniformGrid<Dim, Real>& grid, Vector<Dim, int>& cell,
                                          Vector<Dim, Real>& xi) {
-  constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
   bool out = false;
   for (int i = 0; i < Dim; ++i) {
-    const Real round_off = 16 * static_cast<Real>(grid.cells[i]) * epsilon;
+    const Real round_off = 16 * static_cast<Real>(grid.cells[i]) * math::epsilon<Real>;
     if (xi[i] >= Real(0) && xi[i] < Real(1)) continue;
     if (cell[i] == 0 && xi[i] < Real(0) && xi[i] >= -round_off) continue;
     if (cell[i] == grid.cells[i] - 1 && xi[i] >= Real(1) && xi[i] <= Real(1) + round_off) continue;

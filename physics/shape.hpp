@@ -16,6 +16,7 @@ struct Shape {
   Vector<Dim, T> dN[Support];  ///< their gradients, 1/m
 
   /// sum_I N_I f(I), Eq. (8); `field` maps a node number to a Vector.
+  VSB_ANY_CALLABLE
   template <class Field>
   KOKKOS_FORCEINLINE_FUNCTION Vector<Dim, T> interpolate(const Field& field) const {
     Vector<Dim, T> value = Vector<Dim, T>::zero();
@@ -25,6 +26,7 @@ struct Shape {
   }
 
   /// sum_I f(I) (x) grad N_I: the gradient G(i, j) = d f_i / d x_j of the interpolated field.
+  VSB_ANY_CALLABLE
   template <class Field>
   KOKKOS_FORCEINLINE_FUNCTION Matrix<Dim, T> gradient(const Field& field) const {
     Matrix<Dim, T> g = Matrix<Dim, T>::zero();

@@ -6,7 +6,6 @@
 /// cell_containing(x) and cell_volume(cell).
 #pragma once
 
-#include <limits>
 #include <vsb/physics/cell_numbering.hpp>
 
 namespace vsb {
@@ -64,8 +63,7 @@ struct UniformGrid : CellNumbering<Dim> {
   KOKKOS_FUNCTION bool contains(const Vector<Dim, Real>& x) const {
     const auto q = in_cells(x);
     for (int i = 0; i < Dim; ++i) {
-      constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
-      const Real n = static_cast<Real>(cells[i]), round_off = 16 * n * epsilon;
+      const Real n = static_cast<Real>(cells[i]), round_off = 16 * n * math::epsilon<Real>;
       if (!(q[i] >= -round_off && q[i] <= n + round_off)) return false;
     }
     return true;

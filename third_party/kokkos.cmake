@@ -138,6 +138,19 @@ macro(vsb_build_kokkos tree)
   get_directory_property(vsb_kokkos_devices DIRECTORY "${tree}" DEFINITION KOKKOS_ENABLED_DEVICES)
 endmacro()
 
+# Kokkos itself sends what needs it through its nvcc_wrapper, which looks for nvcc in these two places.
+if(VSB_BACKEND STREQUAL "Cuda" AND NOT TARGET Kokkos::kokkos)
+  if(VSB_BUILD_APPS AND "${CMAKE_CXX_COMPILER}" MATCHES "nvcc")
+    message(FATAL_ERROR "vsb: CMAKE_CXX_COMPILER is ${CMAKE_CXX_COMPILER}; leave it at the host's compiler (g++). Kokkos "
+                        "sends the sources that need it through nvcc; the others do not compile with nvcc.")
+  endif()
+  find_program(VSB_NVCC nvcc PATHS ENV PATH ENV CUDA_ROOT PATH_SUFFIXES bin NO_DEFAULT_PATH)
+  if(NOT VSB_NVCC)
+    message(FATAL_ERROR "vsb: the Cuda backend needs nvcc, which is not in PATH. Install the CUDA toolkit (in "
+                        "/usr/local/cuda for the preset cuda), or say where it is: PATH=<toolkit>/bin:$PATH cmake ...")
+  endif()
+endif()
+
 set(vsb_kokkos_origin "")
 if(TARGET Kokkos::kokkos)
   set(vsb_kokkos_origin "the parent project")

@@ -4,9 +4,17 @@
 #pragma once
 
 #include <Kokkos_Core.hpp>
+#include <limits>
 #include <string>
 
 static_assert(KOKKOS_VERSION >= 30400, "vsb needs Kokkos 3.4 or newer");
+
+/// Before a function template that calls what it is given: where that is for the host alone, so is the call.
+#if defined(__CUDACC__)
+#define VSB_ANY_CALLABLE _Pragma("nv_exec_check_disable")
+#else
+#define VSB_ANY_CALLABLE
+#endif
 
 namespace vsb {
 
@@ -42,6 +50,12 @@ KOKKOS_INLINE_FUNCTION T abs(T x) {
 }
 
 #endif
+
+/// The numbers of std::numeric_limits, whose functions are the host's alone.
+template <class T>
+constexpr T epsilon = std::numeric_limits<T>::epsilon();
+template <class T>
+constexpr T infinity = std::numeric_limits<T>::infinity();
 
 template <class T>
 KOKKOS_INLINE_FUNCTION T min(T a, T b) {

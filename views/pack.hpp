@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <type_traits>
 #include <utility>
-#include <vsb/views/kokkos_compat.hpp>
+#include <vsb/views/pack_native.hpp>
 
 #if defined(__FMA__) && !defined(__CUDACC__) && !defined(__HIPCC__)
 #include <immintrin.h>
@@ -18,15 +18,6 @@
 #endif
 
 namespace vsb {
-
-namespace detail {
-/// The compiler's own vectors of W numbers.
-template <class T, int W>
-struct VectorOf {
-  typedef T Aligned __attribute__((vector_size(W * sizeof(T))));
-  typedef T Unaligned __attribute__((vector_size(W * sizeof(T)), aligned(sizeof(T))));
-};
-}  // namespace detail
 
 template <class T, int W>
 struct PackProduct;
@@ -42,7 +33,7 @@ struct PackMask {
   KOKKOS_FORCEINLINE_FUNCTION static PackMask from_bits(std::uint64_t bits) {
     Native lane{};
     for (int l = 0; l < W; ++l) lane[l] = Word(1) << l;
-    return {((Native{} + static_cast<Word>(bits)) & lane) != 0};
+    return {(detail::repeated<Native>(static_cast<Word>(bits)) & lane) != Native{}};
   }
   KOKKOS_FORCEINLINE_FUNCTION friend PackMask operator&(PackMask a, PackMask b) { return {a.v & b.v}; }
   KOKKOS_FORCEINLINE_FUNCTION friend PackMask operator|(PackMask a, PackMask b) { return {a.v | b.v}; }
@@ -86,7 +77,7 @@ struct Pack {
 
   Pack() = default;
   KOKKOS_FORCEINLINE_FUNCTION Pack(Native n) : v(n) {}
-  KOKKOS_FORCEINLINE_FUNCTION Pack(T x) : v(x - Native{}) {}
+  KOKKOS_FORCEINLINE_FUNCTION Pack(T x) : v(detail::repeated<Native>(x)) {}
 
   /// Of W numbers side by side, wherever they begin.
   KOKKOS_FORCEINLINE_FUNCTION static Pack load(const T* from) {
@@ -125,7 +116,12 @@ struct Pack {
     if constexpr (sizeof(T) == 8 && W == 2) return Native(_mm_fmadd_pd(a.v, b.v, c.v));
     if constexpr (sizeof(T) == 4 && W == 4) return Native(_mm_fmadd_ps(a.v, b.v, c.v));
 #endif
+#if defined(__CUDACC__)
+    for (int l = 0; l < W; ++l) c.set(l, Kokkos::fma(a[l], b[l], c[l]));
+    return c;
+#else
     return a.v * b.v + c.v;
+#endif
   }
 };
 
@@ -160,10 +156,24 @@ struct Lanes {
 };
 
 namespace detail {
+/// Lane l is lane number L of a and, from W on, of b.
+template <class T, int W, int... L>
+KOKKOS_FORCEINLINE_FUNCTION Pack<T, W> shuffled(Pack<T, W> a, Pack<T, W> b,
+                                                std::integer_sequence<int, L...>) {
+#if defined(__CUDACC__)  // whose front end does not expand L in the builtin
+  const int from[W] = {L...};
+  Pack<T, W> p;
+  for (int l = 0; l < W; ++l) p.set(l, from[l] < W ? a[from[l]] : b[from[l] - W]);
+  return p;
+#else
+  return typename Pack<T, W>::Native(__builtin_shufflevector(a.v, b.v, L...));
+#endif
+}
+
 template <class T, int W, int... L>
 KOKKOS_FORCEINLINE_FUNCTION Pack<T, W> shift_in(Pack<T, W> a, Pack<T, W> b,
                                                 std::integer_sequence<int, L...>) {
-  return typename Pack<T, W>::Native(__builtin_shufflevector(a.v, b.v, (W - 1 + L)...));
+  return shuffled(a, b, std::integer_sequence<int, (W - 1 + L)...>{});
 }
 }  // namespace detail
 
@@ -176,7 +186,7 @@ KOKKOS_FORCEINLINE_FUNCTION Pack<T, W> shift_in(Pack<T, W> before, Pack<T, W> p)
 namespace detail {
 template <int By, class T, int W, int... L>
 KOKKOS_FORCEINLINE_FUNCTION Pack<T, W> rotated(Pack<T, W> p, std::integer_sequence<int, L...>) {
-  return typename Pack<T, W>::Native(__builtin_shufflevector(p.v, p.v, ((L - By + W) % W)...));
+  return shuffled(p, p, std::integer_sequence<int, ((L - By + W) % W)...>{});
 }
 }  // namespace detail
 
@@ -211,7 +221,7 @@ KOKKOS_FORCEINLINE_FUNCTION Pack<T, W> keep_lanes(std::uint64_t bits, Pack<T, W>
     return typename Pack<T, W>::Native(_mm256_maskz_mov_ps(static_cast<__mmask8>(bits), p.v));
 #endif
   const auto mask = PackMask<T, W>::from_bits(bits).v;
-  return typename Pack<T, W>::Native(mask ? p.v : typename Pack<T, W>::Native{});
+  return detail::chosen(mask, p.v, typename Pack<T, W>::Native{});
 }
 
 namespace math {
@@ -222,7 +232,7 @@ KOKKOS_FORCEINLINE_FUNCTION T select(bool condition, T a, T b) {
 }
 template <class T, int W>
 KOKKOS_FORCEINLINE_FUNCTION Pack<T, W> select(PackMask<T, W> condition, Pack<T, W> a, Pack<T, W> b) {
-  return typename Pack<T, W>::Native(condition.v ? a.v : b.v);
+  return detail::chosen(condition.v, a.v, b.v);
 }
 template <class T, int W>
 KOKKOS_FORCEINLINE_FUNCTION Pack<T, W> abs(Pack<T, W> x) {

@@ -5,7 +5,6 @@
 /// they lie in memory.
 #pragma once
 
-#include <type_traits>
 #include <utility>
 #include <vsb/views/kokkos_compat.hpp>
 
@@ -16,12 +15,21 @@
 namespace vsb {
 
 namespace detail {
+/// An integral constant that a device can read.
+template <int I>
+struct StaticIndex {
+  static constexpr int value = I;
+  KOKKOS_FORCEINLINE_FUNCTION constexpr operator int() const { return I; }
+};
+
+VSB_ANY_CALLABLE
 template <class Body, int... I>
 KOKKOS_FORCEINLINE_FUNCTION constexpr void static_for(const Body& body, std::integer_sequence<int, I...>) {
-  (body(std::integral_constant<int, I>{}), ...);
+  (body(StaticIndex<I>{}), ...);
 }
 }  // namespace detail
 
+VSB_ANY_CALLABLE
 template <int N, class Body>
 KOKKOS_FORCEINLINE_FUNCTION constexpr void static_for(const Body& body) {
   detail::static_for(body, std::make_integer_sequence<int, N>{});

@@ -97,4 +97,14 @@ struct OwnedBasis<MappedLinearBasis<Dim, Real>, Device> {
   }
 };
 
+/// The basis for work on the host: the backend's own where that is the host.
+template <class Basis>
+auto basis_on_host([[maybe_unused]] const Scene& scene,
+                   [[maybe_unused]] const OwnedBasis<Basis>& of_backend) {
+  if constexpr (runs_on_host)
+    return of_backend;
+  else
+    return OwnedBasis<Basis, Kokkos::HostSpace::device_type>(scene);
+}
+
 }  // namespace vsb::app

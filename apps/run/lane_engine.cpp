@@ -6,6 +6,7 @@ namespace vsb::app {
 namespace {
 
 std::string obstacle(const Scene& scene) {
+  if (!runs_on_host) return "cell lanes do not run on devices yet";
   if (scene.grid.mapped()) return "its grid is mapped";
   if (scene.method.basis != BasisKind::linear) return "its basis is not linear";
   if (scene.method.scatter != "gathered")

@@ -4,6 +4,7 @@
 // Sums in one order, on every machine.
 #define EIGEN_DONT_PARALLELIZE
 #define EIGEN_DONT_VECTORIZE
+#define EIGEN_NO_CUDA  // on the host, also where nvcc compiles
 #include <fmt/format.h>
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>

@@ -36,7 +36,11 @@ template <int Dim, class Real, class Basis>
 class SimulationOf final : public Simulation {
  public:
   explicit SimulationOf(const Scene& scene)
-      : scene_(scene), owned_basis_(scene), basis_(owned_basis_.basis), loads_(scene) {
+      : scene_(scene),
+        owned_basis_(scene),
+        basis_(owned_basis_.basis),
+        on_host_(basis_on_host(scene, owned_basis_)),
+        loads_(scene) {
     const auto placed = place_particles(scene_);
     if (!scene.grid.mapped() && Basis::reach == 0) refuse_on_grid_lines(scene_, placed);
     placed_count_ = static_cast<int>(placed.position.size());
@@ -45,7 +49,7 @@ class SimulationOf final : public Simulation {
     near_ = to_vector<Dim, Real>(placed.position.front());
     bodies_ = bodies_of<Dim, Real>(scene_, placed);
     declared_ = declared_tractions<Device>(scene_, basis_, loads_.on_nodes());
-    const auto surface = place_surface_points<Real, Device>(scene_, basis_, placed);
+    const auto surface = place_surface_points<Real, Device>(scene_, on_host_.basis, placed);
     surface_ = surface.points;
     resultants_ = exact_resultants(scene_);
     options_ = step_options<Dim, Real>(scene_);
@@ -57,12 +61,12 @@ class SimulationOf final : public Simulation {
     if (scene.method.fill_criterion > 0) set_fill_criterion(occupancy, scene.method.fill_criterion);
     if (scene.method.void_filter) {
       set_void_filter(occupancy, basis_);
-      remove_body_cells<Device>(scene_, basis_.grid, occupancy.cells.outside);
+      remove_body_cells<Device>(scene_, on_host_.basis.grid, occupancy.cells.outside);
     }
     locate();
-    check_tractions(scene_, basis_, occupancy, loads_, surface.tractions, placed);
-    auto inside = occupied_cells(scene_, basis_, placed);
-    if (scene.method.void_filter) add_voids<Device>(scene_, basis_, occupancy.cells.outside, inside);
+    check_tractions(scene_, on_host_.basis, occupancy, loads_, surface.tractions, placed);
+    auto inside = occupied_cells(scene_, on_host_.basis, placed);
+    if (scene.method.void_filter) add_voids<Device>(scene_, on_host_.basis, occupancy.cells.outside, inside);
     advice_ = field_advice(scene_, placed, inside);
   }
 
@@ -207,7 +211,7 @@ class SimulationOf final : public Simulation {
     std::vector<int> surplus(scene_cell_count(scene_), 0);  // of marked particles
     std::vector<CellContent> contents(surplus.size(), CellContent::nothing);
     const auto count = [&](int p, const Vector<Dim, int>& cell) {
-      const size_t c = scene_cell(scene_, basis_, cell);
+      const size_t c = scene_cell(scene_, on_host_.basis, cell);
       surplus[c] += marked[static_cast<size_t>(p)] != 0 ? 1 : -1;
       contents[c] = CellContent::particles;
     };
@@ -216,7 +220,7 @@ class SimulationOf final : public Simulation {
     } else {
       const auto host = host_copy(memory_->block);
       for (int p = 0; p < particle_count(); ++p)
-        count(p, basis_.grid.cell_containing(host.particles.position_of(p)));
+        count(p, on_host_.basis.grid.cell_containing(host.particles.position_of(p)));
     }
     for (size_t c = 0; c < contents.size(); ++c)
       if (contents[c] != CellContent::nothing && surplus[c] >= 0) contents[c] = CellContent::marked;
@@ -284,7 +288,7 @@ class SimulationOf final : public Simulation {
   using Device = ExecutionSpace::device_type;
   static_assert(max_tractions == UniformVirtualStress<Dim, Real>::capacity,
                 "a scene may declare as many tractions as the kernels can take");
-  static constexpr bool has_lanes = std::is_same_v<Basis, LinearBasis<Dim, Real>>;
+  static constexpr bool has_lanes = runs_on_host && std::is_same_v<Basis, LinearBasis<Dim, Real>>;
 
   /// The particles as the particle kernels take them, and what these work on.
   struct Memory {
@@ -490,6 +494,7 @@ class SimulationOf final : public Simulation {
   ExecutionSpace exec_;
   OwnedBasis<Basis> owned_basis_;
   Basis basis_;
+  decltype(basis_on_host(std::declval<const Scene&>(), std::declval<const OwnedBasis<Basis>&>())) on_host_;
   Loads<Dim, Real> loads_;
   std::vector<Resultant> resultants_;  ///< of each traction at full load
   int placed_count_ = 0;               ///< particles at the start

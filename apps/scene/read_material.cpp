@@ -7,7 +7,7 @@
 #include <cmath>
 #include <iterator>
 
-#include <vsb/physics/mohr_coulomb.hpp>
+#include "scene/limits.hpp"
 #include "scene/units.hpp"
 
 namespace vsb::app {
@@ -70,8 +70,8 @@ void read_strength(TableReader& r, bool friction, MaterialSpec& m) {
 
 void read_tensile_strength(TableReader& r, MaterialSpec& m) {
   if (m.friction_angle > 0) {
-    const double apex = MohrCoulombConstants{0, 0, m.cohesion, m.friction_angle}.apex();
-    m.tensile_strength = r.number("tensile_strength", Range::between(0, apex), apex,
+    const double most = apex(m);
+    m.tensile_strength = r.number("tensile_strength", Range::between(0, most), most,
                                   "Pa, of the largest principal stress; the apex: no cut-off");
   } else if (r.has("tensile_strength")) {  // there is no apex, and no number that says so
     m.tensile_strength = r.number("tensile_strength", Range::at_least(0), {},

@@ -5,10 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include <vsb/physics/exact_column.hpp>
-#include <vsb/physics/exact_mohr_coulomb_cylinder.hpp>
-#include <vsb/physics/explicit_dynamics.hpp>
-#include <vsb/physics/linear_elastic.hpp>
+#include "scene/limits.hpp"
 #include "scene/read_affine.hpp"
 #include "scene/read_basis.hpp"
 #include "scene/read_grid.hpp"
@@ -200,18 +197,6 @@ void read_method(TableReader r, Scene& scene) {
   r.finish();
 }
 
-/// The shortest of the bodies' times for a compression wave to cross a cell: dt of Eq. (29) for kappa = 1.
-double critical_time(const Scene& scene) {
-  const double smallest = shortest_edge(scene.grid, scene.dimension);
-  double shortest = std::numeric_limits<double>::infinity();
-  for (const auto& body : scene.bodies) {
-    const auto m =
-        LinearElastic<double>::from_young(body.material.youngs_modulus, body.material.poisson_ratio);
-    shortest = std::min(shortest, time_step(1.0, smallest, m.constrained_modulus(), body.density));
-  }
-  return shortest;
-}
-
 TimeSpec read_time(TableReader r, const Scene& scene) {
   TimeSpec t;
   r.allow_only({"dt", "kappa", "steps", "until_static"});
@@ -293,15 +278,13 @@ constexpr double largest_printed_load = 0.01;
 ColumnComparison read_column(TableReader& r, const MaterialSpec& material) {
   ColumnComparison c{};
   c.length = r.number("length", Range::positive(), {}, "m, L0 of Eq. (30)");
-  const double modulus = LinearElastic<double>::from_young(material.youngs_modulus, material.poisson_ratio)
-                             .constrained_modulus();
-  const bool hencky = material.law == MaterialLaw::hencky;
   Range range = Range::any();
-  if (hencky) range.min = -ExactHenckyColumn<double>::limit() * modulus;
+  range.min = -largest_column_tension(material);
   c.traction = r.number("traction", range, {}, "Pa, positive in compression; not 0");
   if (c.traction == 0)
     r.fail(*r.source().get("traction"), "traction", "must not be 0, the errors being relative to it");
-  c.printed_solution = !hencky && std::abs(c.traction) <= largest_printed_load * modulus;
+  c.printed_solution = material.law != MaterialLaw::hencky &&
+                       std::abs(c.traction) <= largest_printed_load * constrained_modulus(material);
   return c;
 }
 
@@ -312,11 +295,7 @@ YieldingCylinderComparison read_yielding_cylinder(TableReader& r, const Material
   YieldingCylinderComparison c{};
   c.inner_radius = r.number("inner_radius", Range::positive(), {}, "m");
   c.outer_radius = r.number("outer_radius", {c.inner_radius, Range::any().max, true, false}, {}, "m");
-  const double collapse =
-      ExactMohrCoulombCylinder<double>{c.inner_radius,    c.outer_radius,          0,
-                                       material.cohesion, material.friction_angle, material.poisson_ratio}
-          .collapse_pressure();
-  c.pressure = r.number("pressure", {0, collapse, true, true}, {},
+  c.pressure = r.number("pressure", {0, collapse_pressure(c, material), true, true}, {},
                         "Pa, positive in compression, less than the collapse load");
   return c;
 }

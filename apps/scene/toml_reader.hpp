@@ -7,19 +7,15 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #define TOML_HEADER_ONLY 1
 #include <toml++/toml.h>
 
-namespace vsb::app {
+#include "scene/scene_error.hpp"
 
-/// A mistake in a scene; the text is complete: file:line:column, key, value, what is allowed.
-struct SceneError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
+namespace vsb::app {
 
 /// Allowed values of a number.
 struct Range {

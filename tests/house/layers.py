@@ -12,7 +12,7 @@ import pathlib
 import re
 import sys
 
-POINT_VIEWS = ("tensor", "kokkos_compat", "masks", "pack", "static_for")
+POINT_VIEWS = ("tensor", "kokkos_compat", "masks", "pack", "pack_native", "static_for")
 STANDARD = r"[a-z_]+"  # <vector>; other libraries' headers have a folder, a suffix or a capital letter
 ALLOWED = {
     "views": [STANDARD, r"Kokkos_\w+\.hpp", r"vsb/views/\w+\.hpp", r"immintrin\.h"],

@@ -56,7 +56,8 @@ inline std::set<int> algorithm_1(const CellNodes& grid, const std::vector<bool>&
   for (size_t cell = 0; cell < void_cell.size(); ++cell)  // step 2
     if (!void_cell[cell] && touches(cell, nodes_of_e1)) e2.insert(cell);
   std::set<int> n1;  // step 3
-  for (const auto& cells : {e1, e2})
+  const std::set<size_t> both[] = {e1, e2};
+  for (const auto& cells : both)
     for (const int node : nodes_of(cells))
       if (active.count(node)) n1.insert(node);
   return n1;

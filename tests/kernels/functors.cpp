@@ -2,7 +2,8 @@
 /// \file
 /// Kernel functors, each called for one index on the host, against numbers worked out by hand.
 #include <algorithm>
-#include <map>
+#include <iterator>
+#include <utility>
 #include <vsb/kernels/balance.hpp>
 #include <vsb/kernels/health.hpp>
 
@@ -27,15 +28,36 @@ Particles<1, double, Host> particle_1d() {
   return particles;
 }
 
-/// What a contribution adds, by node and column.
+/// Sums by node and column.
+class Sums {
+ public:
+  KOKKOS_FUNCTION double& at(int node, int column) {
+    used_[node][column] = true;
+    return sums_[node][column];
+  }
+  double operator[](const std::pair<int, int>& at) const { return sums_[at.first][at.second]; }
+  /// How many were added to.
+  int size() const {
+    int n = 0;
+    for (const auto& node : used_) n += static_cast<int>(std::count(std::begin(node), std::end(node), true));
+    return n;
+  }
+  void clear() { *this = Sums(); }
+
+ private:
+  double sums_[4][5] = {};
+  bool used_[4][5] = {};
+};
+
+/// What a contribution adds.
 struct Collector {
-  std::map<std::pair<int, int>, double>& sums;
-  double& operator()(int, int node, int column) const { return sums[{node, column}]; }
+  Sums& sums;
+  KOKKOS_FUNCTION double& operator()(int, int node, int column) const { return sums.at(node, column); }
 };
 
 /// sbar = -7 and fbar = 3 for traction 1, the only one declared.
 struct OneDimensionalField : ActsOnParticles {
-  VirtualStressValue<1, double> at(const Vector<1, double>&, TractionMask mask) const {
+  KOKKOS_FUNCTION VirtualStressValue<1, double> at(const Vector<1, double>&, TractionMask mask) const {
     if (mask == 0) return VirtualStressValue<1, double>::zero();
     return {{{-7, 0, 0}}, {{3}}};
   }
@@ -44,7 +66,7 @@ struct OneDimensionalField : ActsOnParticles {
 /// Adds a particle's number + 1 to its first node, and ten times that to its second.
 struct NumberedContribution {
   static constexpr int columns = 1;
-  void operator()(int p, const kernel::BinSink<double, 2, 1>& sink) const {
+  KOKKOS_FUNCTION void operator()(int p, const kernel::BinSink<double, 2, 1>& sink) const {
     sink(0, -1, 0) += p + 1;
     sink(1, -1, 0) += 10 * (p + 1);
   }
@@ -53,7 +75,7 @@ struct NumberedContribution {
 }  // namespace
 
 TEST_CASE("ParticlesToGrid in one dimension") {
-  std::map<std::pair<int, int>, double> sums;
+  Sums sums;
   const BoundaryNodes<Host> boundary("vsb::boundary", 2);
   const Vector<1, double> gravity{{-5}};
   SECTION("without a virtual stress") {
@@ -103,7 +125,7 @@ TEST_CASE("ParticlesToGrid in two dimensions") {
   const BoundaryNodes<Host> boundary("vsb::boundary", 4);
   kernel::ParticlesToGrid<LinearBasis<2, double>, UniformVirtualStress<2, double>, 2, double, Host> functor{
       particles, basis, pressure, boundary, {{0, -8}}};
-  std::map<std::pair<int, int>, double> sums;
+  Sums sums;
   functor(0, Collector{sums});
   CHECK(sums[{3, 0}] == 0.125);
   CHECK(sums[{3, 1}] == 2);
@@ -157,7 +179,7 @@ TEST_CASE("GridToParticles and the re-map") {
   CHECK(particles.position(0, 0) == 1.5);
 
   particles.velocity(0, 0) = 3;
-  std::map<std::pair<int, int>, double> sums;
+  Sums sums;
   kernel::RemapMomentum<LinearBasis<1, double>, 1, double, Host>{particles, cell_1d}(0, Collector{sums});
   CHECK(sums[{0, 0}] == 9);
   CHECK(sums[{1, 0}] == 3);
@@ -374,7 +396,7 @@ TEST_CASE("NodeBalance, StrainEnergy and SumChunk") {
              WithinRel(4 * 46. / 100, 1e-15));  // |sigma|^2 = 1 + 4 + 9 + 2 16 over 2 M, times 8 m^2
 
   struct Term {
-    void operator()(int i, Vector<1, double>& s) const { s[0] += i; }
+    KOKKOS_FUNCTION void operator()(int i, Vector<1, double>& s) const { s[0] += i; }
   };
   const Kokkos::View<double**, Kokkos::LayoutRight, Host> partial("vsb::partial", 2, 1);
   kernel::SumChunk<1, Term, Host>{{}, 1030, partial}(1);

@@ -102,8 +102,9 @@ Matrix<Dim, double> random_matrix(Random& random) {
   return A;
 }
 
+/// `on_host` is the basis for work on the host.
 template <int Dim, class Basis>
-void check_stiffness(const Basis& basis) {
+void check_stiffness(const Basis& basis, const Basis& on_host) {
   const TwoBodies<Dim, Basis> two(basis, 91);
   auto K = two.stiffness();
   const int nodes = basis.node_count();
@@ -111,7 +112,8 @@ void check_stiffness(const Basis& basis) {
              Kv = nodal_vectors<Dim>(nodes);
   Random random(92);
   for (int trial = 0; trial < 20; ++trial) {
-    for (const auto& vectors : {u, v})
+    const typename Nodes<Dim, double, Device>::Fields both[] = {u, v};
+    for (const auto& vectors : both)
       edit(vectors, [&](const auto& host) {
         for (int I = 0; I < nodes; ++I)
           for (int i = 0; i < Dim; ++i) host(I, i) = random(-1, 1);
@@ -130,8 +132,8 @@ void check_stiffness(const Basis& basis) {
     t[i] = random(-1, 1);
     for (int j = 0; j < Dim; ++j) spin(i, j) = 0.5 * (A(i, j) - A(j, i));
   }
-  const auto strained = affine_displacement<Dim>(basis, t, A),
-             turned = affine_displacement<Dim>(basis, t, spin);
+  const auto strained = affine_displacement<Dim>(on_host, t, A),
+             turned = affine_displacement<Dim>(on_host, t, spin);
   K.apply(Exec(), strained, Ku);
   const double energy = uniform_strain_energy(two, A);
   CHECK_THAT(product(strained, Ku), WithinRel(energy, 1e-12));
@@ -219,9 +221,12 @@ Problem<2, LinearBasis<2, double>> plate(const Filled& filled) {
 
 TEMPLATE_TEST_CASE_SIG("the stiffness is symmetric, positive, and right for uniform strains", "",
                        ((int Dim), Dim), 1, 2, 3) {
-  check_stiffness<Dim>(LinearBasis<Dim, double>{make_grid<Dim, double>()});
+  const LinearBasis<Dim, double> uniform{make_grid<Dim, double>()};
+  check_stiffness<Dim>(uniform, uniform);
   const auto mesh = make_distorted_mesh<Dim, double>(0.1);
-  check_stiffness<Dim>(MappedLinearBasis<Dim, double>{mesh.grid});
+  const auto on_host = make_distorted_mesh<Dim, double, Host>(0.1);
+  check_stiffness<Dim>(MappedLinearBasis<Dim, double>{mesh.grid},
+                       MappedLinearBasis<Dim, double>{on_host.grid});
 }
 
 TEMPLATE_TEST_CASE_SIG("the blocks on the diagonal are those of the stiffness", "", ((int Dim), Dim), 1, 2,
@@ -349,7 +354,8 @@ TEMPLATE_TEST_CASE_SIG("patch test: a free body of any cells takes the stress on
 TEST_CASE("patch test on a distorted mesh") {
   // The midpoints of the halves integrate J^-T det J, bilinear in 2D, exactly.
   const auto mesh = make_distorted_mesh<2, double>(0.15, {{7, 6, 1}});
-  const auto& grid = mesh.grid;
+  const auto on_host = make_distorted_mesh<2, double, Host>(0.15, {{7, 6, 1}});
+  const auto& grid = on_host.grid;
   std::vector<Vector<2, double>> places;
   std::vector<double> volumes;
   for_each_cell(grid, [&](const auto& cell) {
@@ -377,7 +383,8 @@ TEST_CASE("patch test on a distorted mesh") {
       particles.mass(k) = particles.volume(k) = volumes[n];
     }
   });
-  Problem<2, MappedLinearBasis<2, double>> body({grid}, block, LinearElastic<double>::from_young(1000, 0.3));
+  Problem<2, MappedLinearBasis<2, double>> body({mesh.grid}, block,
+                                                LinearElastic<double>::from_young(1000, 0.3));
   body.load.stress[0] = {{-3, 2, 0, 0.7}};
   CHECK_FALSE(body.unsupported().found);
   REQUIRE(body.solve().converged);

@@ -101,8 +101,8 @@ std::uint64_t state_hash(int steps) {
   const auto sums = read(state.nodes.sums);
   add(host.data(), host.span() * sizeof(double));
   add(sums.data(), sums.span() * sizeof(double));
-  for (const double value : {b.unbalanced_force, b.internal_force, b.kinetic_energy, b.strain_energy})
-    add(&value, sizeof(value));
+  const double values[] = {b.unbalanced_force, b.internal_force, b.kinetic_energy, b.strain_energy};
+  for (const double value : values) add(&value, sizeof(value));
   return hash;
 }
 

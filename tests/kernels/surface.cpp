@@ -113,7 +113,8 @@ TEMPLATE_TEST_CASE_SIG("areas turn and stretch with the material", "", ((int Dim
   const LinearBasis<Dim, double> basis{make_grid<Dim, double>()};
   const auto nodes = allocate_nodes<Dim, double, Device>(basis.node_count());
   const auto G = random_gradient<Dim>(3);
-  for (const auto& field : {nodes.remapped_velocity, nodes.velocity})
+  const typename Nodes<Dim, double, Device>::Fields velocities[] = {nodes.remapped_velocity, nodes.velocity};
+  for (const auto& field : velocities)
     edit(field, [&](const auto& v) {
       for (int I = 0; I < basis.node_count(); ++I) {
         const auto velocity = G * basis.grid.node_position(I);

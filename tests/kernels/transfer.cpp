@@ -65,7 +65,7 @@ Vector<Dim, Real> some_vector() {
 template <int Row>
 struct ReportGradient {
   template <int Dim>
-  static constexpr int state_size() {
+  KOKKOS_FUNCTION static constexpr int state_size() {
     return 0;
   }
   template <int Dim, class T>
@@ -180,7 +180,9 @@ TEMPLATE_TEST_CASE_SIG("a linear velocity field is seen exactly by every particl
     for (int j = 0; j < Dim; ++j) v += A[i][j] * static_cast<double>(x[j]);
     return v;
   };
-  for (const auto& view : {setup.state.nodes.velocity, setup.state.nodes.remapped_velocity})
+  const auto& nodes = setup.state.nodes;
+  const typename Nodes<Dim, Real, Device>::Fields velocities[] = {nodes.velocity, nodes.remapped_velocity};
+  for (const auto& view : velocities)
     edit(view, [&](const auto& host) {
       for (int I = 0; I < grid.node_count(); ++I)
         for (int i = 0; i < Dim; ++i) host(I, i) = static_cast<Real>(field(grid.node_position(I), i));

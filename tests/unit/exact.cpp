@@ -148,24 +148,25 @@ TEST_CASE("ellipse: a circular hole is Kirsch's, with the pressure's Lame stress
   const double a = 2, p = 5, s0 = 3;
   for (const double K : {0.5, 1., 2.}) {
     const ExactEllipse<double> ellipse{a, a, p, s0, K, 0.2};
-    const double mean = -(K + 1) * s0 / 2, half = -(K - 1) * s0 / 2;
+    const double mean = -(K + 1) * s0 / 2, swing = -(K - 1) * s0 / 2;
     for (const double r : {2., 2.7, 11.})
       for (const double t : {0.2, 1.1, 2.9, -2.}) {
         const double q = a * a / (r * r), x = r * std::cos(t), y = r * std::sin(t);
         const auto s = to_polar(ellipse.stress({{x, y}}), x, y);
         CAPTURE(K, r, t);
-        CHECK_THAT(s.rr, WithinAbs(mean * (1 - q) + half * (1 - 4 * q + 3 * q * q) * std::cos(2 * t) - p * q,
+        CHECK_THAT(s.rr, WithinAbs(mean * (1 - q) + swing * (1 - 4 * q + 3 * q * q) * std::cos(2 * t) - p * q,
                                    1e-12));
-        CHECK_THAT(s.tt, WithinAbs(mean * (1 + q) - half * (1 + 3 * q * q) * std::cos(2 * t) + p * q, 1e-12));
-        CHECK_THAT(s.rt, WithinAbs(-half * (1 + 2 * q - 3 * q * q) * std::sin(2 * t), 1e-12));
+        CHECK_THAT(s.tt,
+                   WithinAbs(mean * (1 + q) - swing * (1 + 3 * q * q) * std::cos(2 * t) + p * q, 1e-12));
+        CHECK_THAT(s.rt, WithinAbs(-swing * (1 + 2 * q - 3 * q * q) * std::sin(2 * t), 1e-12));
       }
   }
 }
 
 TEST_CASE("ellipse: K = 2 is K = 1/2 turned by a right angle, for a circle") {
-  const ExactEllipse<double> two{2, 2, 5, 3, 2, 0.2}, half{2, 2, 5, 6, 0.5, 0.2};
+  const ExactEllipse<double> two{2, 2, 5, 3, 2, 0.2}, one_half{2, 2, 5, 6, 0.5, 0.2};
   for (const auto& at : {Vector<2, double>{{2.1, 0.4}}, {{-0.3, 3}}, {{5, -5}}}) {
-    const auto s = two.stress(at), turned = half.stress({{at[1], at[0]}});
+    const auto s = two.stress(at), turned = one_half.stress({{at[1], at[0]}});
     CHECK_THAT(s[0], WithinAbs(turned[1], 1e-12));
     CHECK_THAT(s[1], WithinAbs(turned[0], 1e-12));
     CHECK_THAT(s[3], WithinAbs(turned[3], 1e-12));

@@ -2,6 +2,7 @@
 /// \file
 /// Principal values against Eigen's, and Hencky elasticity: closed forms, objectivity, closed paths, the
 /// limit of small strain.
+#define EIGEN_NO_CUDA  // on the host, also where nvcc compiles
 #include <Eigen/Dense>
 #include <vsb/physics/exact_column.hpp>
 #include <vsb/physics/hencky.hpp>

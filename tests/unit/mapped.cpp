@@ -307,8 +307,8 @@ TEST_CASE("volumes of cells") {
   // A frustum of a pyramid, h (A + B + sqrt(A B)) / 3.
   const auto frustum =
       make_mapped_mesh<double, Host>(Vector<3, int>{{1, 1, 1}}, [](const Vector<3, int>& ijk) {
-        const double half = ijk[2] ? 0.5 : 1;
-        return Vector<3, double>{{ijk[0] ? half : -half, ijk[1] ? half : -half, 3. * ijk[2]}};
+        const double reach = ijk[2] ? 0.5 : 1;
+        return Vector<3, double>{{ijk[0] ? reach : -reach, ijk[1] ? reach : -reach, 3. * ijk[2]}};
       });
   CHECK_THAT(frustum.grid.cell_volume({{0, 0, 0}}), WithinRel(4. + 1 + 2, 1e-14));
 }

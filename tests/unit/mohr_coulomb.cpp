@@ -3,6 +3,7 @@
 /// The return to the Mohr-Coulomb surface with tension cut-off: every region by hand, random states, the
 /// closest point in the energy norm by a search along the surface, turned and exchanged axes, paths of
 /// laboratory tests.
+#define EIGEN_NO_CUDA  // on the host, also where nvcc compiles
 #include <Eigen/Dense>
 #include <vsb/physics/mohr_coulomb.hpp>
 
