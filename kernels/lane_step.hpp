@@ -82,6 +82,12 @@ void mark_packed_lanes(const Exec& exec, LaneState<Dim, Real, Device>& s) {
 
 namespace detail {
 
+/// Whether cells turned void or filled in a step in which so many particles left theirs.
+template <class Exec, int Dim, class Real, class Device>
+bool cells_changed(const Exec& exec, const LaneState<Dim, Real, Device>& s, int leavers) {
+  return leavers > 0 && update_occupied(exec, s.memory.lanes, s.boundary);
+}
+
 /// Marks the boundary anew where a field acts and cells turned void or filled; whether that was so.
 template <class Field, class Exec, int Dim, class Real, class Device>
 bool bring_marks_up_to_date(const Exec& exec, LaneState<Dim, Real, Device>& s) {
@@ -115,6 +121,45 @@ void make_more_room(LaneState<Dim, Real, Device>& s, const HomelessCount& homele
   }
   ++s.repacked;
 }
+
+namespace detail {
+
+/// After the sweeps of a step: brings the leavers to their cells, marks the boundary, and sums up where that
+/// is not done yet (`summed`: by the last sweep). Returns what lane_step does. Other states than LaneState
+/// have their own mark_packed_lanes, cells_changed, bring_marks_up_to_date and sum_lanes.
+template <class Exec, class Field, class State>
+int settle_leavers(const Exec& exec, State& s, const Field& next_virtual_stress, bool summed) {
+  auto& m = s.memory;
+  ++s.steps_since_repacked;
+  const int leavers = count_leavers(exec, m);
+  s.steps_of_flow = leavers > m.lanes.particle_count / 50 ? math::min(s.steps_of_flow + 1, 2) : 0;
+  if (leavers > 0) {
+    summed = summed && leavers < m.lanes.particle_count / 16;
+    // Holes cost as much as particles; to close them costs as much as a particle's way.
+    const bool closing = s.steps_since_repacked % 8 == 0;
+    const auto homeless =
+        take_in_leavers(exec, m, next_virtual_stress, s.boundary.tractions, summed, closing);
+    if (homeless.any()) {
+      make_more_room(s, homeless);
+      // Where particles flow, there are groups where the body is about to be.
+      const int lost = repack_lanes(exec, m, homeless.without_group > 0 && s.steps_since_repacked < 100);
+      s.steps_since_repacked = 0;
+      if (lost >= 0) return lost;
+      mark_packed_lanes(exec, s);
+      sum_lanes(exec, s, next_virtual_stress);
+      return -1;
+    }
+  }
+  if (cells_changed(exec, s, leavers)) s.unmarked = true;
+  const bool marked = bring_marks_up_to_date<Field>(exec, s);
+  if (!summed)
+    sum_lanes(exec, s, next_virtual_stress);
+  else if (marked && Field::loaded)
+    sum_lanes(exec, s, next_virtual_stress, s.boundary.stale);
+  return -1;
+}
+
+}  // namespace detail
 
 /// Sums up for the first step, or anew after a change of loads; `virtual_stress` is the field at the end of
 /// the step to come. After a change of declarations mark_packed_lanes must come first.
@@ -159,34 +204,7 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
             summed});
   });
   move_surface_points(exec, m, s.surface);
-  ++s.steps_since_repacked;
-  const int leavers = count_leavers(exec, m);
-  s.steps_of_flow = leavers > m.lanes.particle_count / 50 ? math::min(s.steps_of_flow + 1, 2) : 0;
-  if (leavers == 0) {
-    if (!summed) detail::sum_lanes(exec, s, next_virtual_stress);
-    return -1;
-  }
-  summed = summed && leavers < m.lanes.particle_count / 16;
-  // Holes cost as much as particles; to close them costs as much as a particle's way.
-  const bool closing = s.steps_since_repacked % 8 == 0;
-  const auto homeless = take_in_leavers(exec, m, next_virtual_stress, s.boundary.tractions, summed, closing);
-  if (homeless.any()) {
-    make_more_room(s, homeless);
-    // Where particles flow, there are groups where the body is about to be.
-    const int lost = repack_lanes(exec, m, homeless.without_group > 0 && s.steps_since_repacked < 100);
-    s.steps_since_repacked = 0;
-    if (lost >= 0) return lost;
-    mark_packed_lanes(exec, s);
-    detail::sum_lanes(exec, s, next_virtual_stress);
-    return -1;
-  }
-  if (update_occupied(exec, m.lanes, s.boundary)) s.unmarked = true;
-  const bool marked = detail::bring_marks_up_to_date<Field>(exec, s);
-  if (!summed)
-    detail::sum_lanes(exec, s, next_virtual_stress);
-  else if (marked && Field::loaded)
-    detail::sum_lanes(exec, s, next_virtual_stress, s.boundary.stale);
-  return -1;
+  return detail::settle_leavers(exec, s, next_virtual_stress, summed);
 }
 
 }  // namespace vsb

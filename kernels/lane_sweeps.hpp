@@ -279,7 +279,7 @@ struct MoveGroup {
       auto cell = before;
       Vector<Dim, Real> here;
       for (int i = 0; i < Dim; ++i) here[i] = xi[i][l];
-      if (!to_next_cell(grid, cell, here)) continue;
+      if (!to_next_cell(grid, cell, here, lanes.dual ? Real(0.5) : Real(0))) continue;
       for (int i = 0; i < Dim; ++i) xi[i].set(l, here[i]);
       const LaneMask lane = LaneMask(1) << l;
       const int layers = Dim == 1 ? 0 : cell[Dim - 1] - before[Dim - 1];
