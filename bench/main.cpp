@@ -56,6 +56,7 @@ int main(int argc, char** argv) {
   register_steps();
   register_extra_cost();
   register_lanes();
+  register_spline_lanes();
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   Kokkos::finalize();

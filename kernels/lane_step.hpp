@@ -17,6 +17,7 @@ namespace vsb {
 /// What a step on cell lanes works on.
 template <int Dim, class Real, class Device>
 struct LaneState {
+  static constexpr bool splines = false;
   LaneMemory<Dim, Real, Device> memory;
   LaneBoundary<Dim, Device> boundary;
   LaneSurfacePoints<Dim, Real, Device> surface;  ///< none, unless a traction is imposed on points
@@ -70,6 +71,18 @@ void sum_lanes(const Exec& exec, const LaneState<Dim, Real, Device>& s, const Fi
 }
 
 }  // namespace detail
+
+/// The grid of the scene; before packing.
+template <int Dim, class Real, class Device>
+void set_grid(LaneState<Dim, Real, Device>& s, const UniformGrid<Dim, Real>& grid) {
+  s.memory.grid = grid;
+}
+
+/// Nodes at which a traction acts. Waits for the device.
+template <class Exec, int Dim, class Real, class Device>
+int count_loaded_nodes(const Exec& exec, const LaneState<Dim, Real, Device>& s) {
+  return count_loaded_nodes(exec, s.memory.lanes, s.boundary);
+}
 
 /// Marks the boundary of lanes that were packed anew.
 template <class Exec, int Dim, class Real, class Device>

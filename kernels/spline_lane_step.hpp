@@ -28,11 +28,18 @@ UniformGrid<Dim, Real> dual_grid(const UniformGrid<Dim, Real>& grid) {
 /// [node of the grid with its ghost layer].
 template <int Dim, class Real, class Device>
 struct SplineLaneState : LaneState<Dim, Real, Device> {
+  static constexpr bool splines = true;
   UniformGrid<Dim, Real> grid;  ///< of the scene, without a ghost layer
   LaneGhosts<Device> ghosts;
   LaneCorners<Device> corners;
   Kokkos::View<int*, Device> crossed;  ///< [layer]: 1 where particles changed the cell of the scene's grid
 };
+
+/// The grid of the scene; before packing.
+template <int Dim, class Real, class Device>
+void set_grid(SplineLaneState<Dim, Real, Device>& s, const UniformGrid<Dim, Real>& grid) {
+  s.grid = grid;
+}
 
 namespace kernel {
 

@@ -29,42 +29,46 @@ KOKKOS_FORCEINLINE_FUNCTION void set_zero(QuadraticPolynomial<Dim, P>& m) {
   static_for<m.size>([&](auto k) VSB_UNROLLED { m[k] = P(0); });
 }
 
-/// Calls work(entry, count, products) for the slots of a group, at most block_slots at a time, from an entry
-/// on: products[s] = make(xi) of slot s.
+/// Calls work(anew, entry, count, products) for the slots of a group, at most block_slots at a time, from an
+/// entry on: products[s] = make(xi) of slot s; anew with the first of them.
 template <int Dim, class Real, class Device, class Make, class Work>
 KOKKOS_FORCEINLINE_FUNCTION void for_each_block(const CellLanes<Dim, Real, Device>& lanes,
                                                 const LaneGroup<Dim>& group, const Make& make,
                                                 const Work& work) {
   using P = typename Lanes<Real>::Pack;
   TensorProduct<Dim, P> products[block_slots];
-  for (int first = 0; first < group.slots; first += block_slots) {
+  int first = 0;
+  do {
     const int count = group.slots - first < block_slots ? group.slots - first : block_slots;
     const size_t entry = lanes.begin(group) + static_cast<size_t>(first) * P::width;
     for (int s = 0; s < count; ++s)
       products[s] = make(lanes.load_xi(entry + static_cast<size_t>(s) * P::width));
-    work(entry, count, products);
-  }
+    work(first == 0, entry, count, products);
+    first += block_slots;
+  } while (first < group.slots);
 }
 
-/// sum[n] += sum over slots of weight(n, entry) times their products, by add(n, sum, weight, product); n is a
-/// compile-time constant. As many sums at a time as stay in registers.
+/// sum[n] = (anew) or += sum over slots of weight(n, entry) times their products, by add(n, sum, weight,
+/// product); n is a compile-time constant. As many sums at a time as stay in registers.
 template <int Count, int Dim, class P, class Weight, class Add>
-KOKKOS_FORCEINLINE_FUNCTION void accumulate(QuadraticPolynomial<Dim, P> (&sum)[Count], size_t entry, int count,
-                                            const TensorProduct<Dim, P>* products, const Weight& weight,
-                                            const Add& add) {
+KOKKOS_FORCEINLINE_FUNCTION void accumulate(QuadraticPolynomial<Dim, P> (&sum)[Count], bool anew, size_t entry,
+                                            int count, const TensorProduct<Dim, P>* products,
+                                            const Weight& weight, const Add& add) {
   constexpr int together = Dim == 3 ? 1 : Count;
   static_for<Count / together>([&](auto pass) VSB_UNROLLED {
     QuadraticPolynomial<Dim, P> in_registers[together];
-    static_for<together>([&](auto n) VSB_UNROLLED {
-      static_for<sum[0].size>([&](auto k) VSB_UNROLLED { in_registers[n][k] = sum[pass * together + n][k]; });
-    });
+    static_for<together>([&](auto n) VSB_UNROLLED { set_zero<Dim>(in_registers[n]); });
     for (int s = 0; s < count; ++s)
       static_for<together>([&](auto n) VSB_UNROLLED {
         const auto number = std::integral_constant<int, pass * together + n>{};
         add(number, in_registers[n], weight(number, entry + static_cast<size_t>(s) * P::width), products[s]);
       });
     static_for<together>([&](auto n) VSB_UNROLLED {
-      static_for<sum[0].size>([&](auto k) VSB_UNROLLED { sum[pass * together + n][k] = in_registers[n][k]; });
+      auto& to = sum[pass * together + n];
+      if (anew)
+        static_for<to.size>([&](auto k) VSB_UNROLLED { to[k] = in_registers[n][k]; });
+      else
+        static_for<to.size>([&](auto k) VSB_UNROLLED { to[k] += in_registers[n][k]; });
     });
   });
 }
@@ -76,12 +80,11 @@ KOKKOS_FORCEINLINE_FUNCTION void mass_and_momentum(const CellLanes<Dim, Real, De
   using P = typename Lanes<Real>::Pack;
   constexpr int first = WithMass ? 0 : 1, count = Dim + 1 - first;
   QuadraticPolynomial<Dim, P> sum[count];
-  static_for<count>([&](auto n) VSB_UNROLLED { set_zero<Dim>(sum[n]); });
   for_each_block(
       lanes, group, [&](const auto& xi) VSB_UNROLLED { return TensorProduct<Dim, P>::splines(xi); },
-      [&](size_t entry, int slots, const auto* products) VSB_UNROLLED {
+      [&](bool anew, size_t entry, int slots, const auto* products) VSB_UNROLLED {
         accumulate<count, Dim, P>(
-            sum, entry, slots, products,
+            sum, anew, entry, slots, products,
             [&](auto n, size_t e) VSB_UNROLLED {
               const P m = lanes.load(lanes.mass_column, e);
               if constexpr (n + first == 0)
@@ -122,11 +125,11 @@ template <int Dim, class P>
 using StressMoments = QuadraticPolynomial<Dim, P>[pair_count(Dim)];
 
 template <int Dim, class P, class Value>
-KOKKOS_FORCEINLINE_FUNCTION void add_stress_moments(StressMoments<Dim, P>& moments, size_t entry, int count,
-                                                    const TensorProduct<Dim, P>* products,
+KOKKOS_FORCEINLINE_FUNCTION void add_stress_moments(StressMoments<Dim, P>& moments, bool anew, size_t entry,
+                                                    int count, const TensorProduct<Dim, P>* products,
                                                     const Value& value) {
   accumulate<pair_count(Dim), Dim, P>(
-      moments, entry, count, products,
+      moments, anew, entry, count, products,
       [&](auto n, size_t e) VSB_UNROLLED {
         return value(symmetric_index(pair_first(n, Dim), pair_second(n, Dim)), e);
       },
@@ -135,15 +138,13 @@ KOKKOS_FORCEINLINE_FUNCTION void add_stress_moments(StressMoments<Dim, P>& momen
       });
 }
 
-/// f_i += sum_j moments of sigma_ij and dq / dx_j; f as moments.
-template <int Dim, class Real, class P>
+/// f += sum_j moments of sigma_ij and dq / dx_j; f as moments.
+template <int i, int Dim, class Real, class P>
 KOKKOS_FORCEINLINE_FUNCTION void add_divergence(const StressMoments<Dim, P>& moments,
                                                 const Vector<Dim, Real>& inverse_spacing,
-                                                QuadraticPolynomial<Dim, P> (&f)[Dim]) {
-  static_for<Dim>([&](auto i) VSB_UNROLLED {
-    static_for<Dim>([&](auto j) VSB_UNROLLED {
-      add_slope_moments<j, Dim>(f[i], P(inverse_spacing[j]), moments[pair_number(i, j, Dim)]);
-    });
+                                                QuadraticPolynomial<Dim, P>& f) {
+  static_for<Dim>([&](auto j) VSB_UNROLLED {
+    add_slope_moments<j, Dim>(f, P(inverse_spacing[j]), moments[pair_number(i, j, Dim)]);
   });
 }
 
@@ -155,18 +156,21 @@ template <int Dim, class Real, class Device, class P>
                                                            const SymmetricTensor<Dim, P>& in_lane,
                                                            QuadraticPolynomial<Dim, P> (&f)[Dim]) {
   StressMoments<Dim, P> moments;
-  static_for<pair_count(Dim)>([&](auto n) VSB_UNROLLED { set_zero<Dim>(moments[n]); });
   for_each_block(
       lanes, group,
       [&](const auto& xi) VSB_UNROLLED { return TensorProduct<Dim, P>::monomials(Powers<Dim, P>(xi)); },
-      [&](size_t entry, int slots, const auto* products) VSB_UNROLLED {
-        add_stress_moments<Dim, P>(moments, entry, slots, products, [&](int c, size_t e) VSB_UNROLLED {
+      [&](bool anew, size_t entry, int slots, const auto* products) VSB_UNROLLED {
+        add_stress_moments<Dim, P>(moments, anew, entry, slots, products, [&](int c, size_t e) VSB_UNROLLED {
           return P((in_lane[c] - lanes.load(lanes.stress_column + c, e)) * lanes.load(lanes.volume_column, e));
         });
       });
-  static_for<Dim>([&](auto i) VSB_UNROLLED { set_zero<Dim>(f[i]); });
-  add_divergence<Dim>(moments, inverse_spacing, f);
-  static_for<Dim>([&](auto i) VSB_UNROLLED { nodes_from_quadratic<Dim>(f[i]); });
+  static_for<Dim>([&](auto i) VSB_UNROLLED {
+    QuadraticPolynomial<Dim, P> here;
+    set_zero<Dim>(here);
+    add_divergence<i, Dim>(moments, inverse_spacing, here);
+    nodes_from_quadratic<Dim>(here);
+    static_for<here.size>([&](auto a) VSB_UNROLLED { f[i][a] = here[a]; });
+  });
 }
 
 /// Mass and momentum of a group.

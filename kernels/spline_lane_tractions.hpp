@@ -36,13 +36,12 @@ template <class Field, int Dim, class Real, class Device, class P>
   const auto& lanes = on.lanes;
   const auto& stencil = lanes.stencils(lanes.number_of(group));
   QuadraticPolynomial<Dim, P> volume[1];
-  set_zero<Dim>(volume[0]);
   for_each_block(
       lanes, group,
       [&](const auto& xi) VSB_UNROLLED { return TensorProduct<Dim, P>::monomials(Powers<Dim, P>(xi)); },
-      [&](size_t entry, int slots, const auto* products) VSB_UNROLLED {
+      [&](bool anew, size_t entry, int slots, const auto* products) VSB_UNROLLED {
         accumulate<1, Dim, P>(
-            volume, entry, slots, products,
+            volume, anew, entry, slots, products,
             [&](auto, size_t e) VSB_UNROLLED { return lanes.load(lanes.volume_column, e); },
             [](auto, auto& s, P w, const auto& product)
                 VSB_UNROLLED { add_monomials<AllNeeded, Dim>(s, w, product); });
@@ -100,22 +99,22 @@ template <class Field, int Dim, class Real, class Device, class P>
         for_each_block(
             lanes, group,
             [&](const auto& xi) VSB_UNROLLED { return TensorProduct<Dim, P>::monomials(Powers<Dim, P>(xi)); },
-            [&](size_t entry, int slots, const auto* products) {
+            [&](bool, size_t entry, int slots, const auto* products) {
               VirtualStressValue<Dim, P> bar[block_slots];
               for (int s = 0; s < slots; ++s)
                 evaluate(on, group, field, tractions, entry + static_cast<size_t>(s) * P::width, bar[s]);
               const auto slot_of = [&](size_t e) { return (e - entry) / P::width; };
-              add_stress_moments<Dim, P>(moments, entry, slots, products, [&](int c, size_t e) VSB_UNROLLED {
+              add_stress_moments<Dim, P>(moments, false, entry, slots, products, [&](int c, size_t e) VSB_UNROLLED {
                 return bar[slot_of(e)].stress[c];
               });
               accumulate<Dim, Dim, P>(
-                  t, entry, slots, products,
+                  t, false, entry, slots, products,
                   [&](auto i, size_t e) VSB_UNROLLED { return bar[slot_of(e)].divergence[i]; },
                   [](auto, auto& s, P w, const auto& product)
                       VSB_UNROLLED { add_monomials<AllNeeded, Dim>(s, w, product); });
             });
-        add_divergence<Dim>(moments, on.grid.inverse_spacing, t);
         static_for<Dim>([&](auto i) VSB_UNROLLED {
+          add_divergence<i, Dim>(moments, on.grid.inverse_spacing, t[i]);
           nodes_from_quadratic<Dim>(t[i]);
           add_where<Dim>(bits, t[i], f[i]);
         });

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// Quadratic B-splines (physics/quadratic_bspline_basis.hpp) in the dual cell of a node, the points nearest to
-/// it, in the scaled monomials of local coordinates xi in [0, 1]^Dim, each of which is the derivative of the
-/// next:
-///   q_k(xi) = prod_i xi_i^k_i / k_i!,   k_i = 0, 1, 2,   k = sum_i 3^i k_i;
-///   d q_k / d xi_i = q_(k - 3^i), or 0 where k_i = 0.
-/// As for the multilinear functions (physics/cell_polynomial.hpp), a nodal field is sum_k c_k q_k with c from
-/// its values by differences, and sums of gradients over particles follow from moments by the transposed
-/// differences. Sums of the functions themselves are best taken with these: they are of one sign, and a node
-/// with next to no mass has its sums to round-off. T is a number, or a pack with a cell in every lane.
+/// it, as polynomials of local coordinates xi in [0, 1]^Dim; k = sum_i 3^i k_i, k_i = 0, 1, 2:
+/// - a nodal field is sum_k c_k r_k with c from its values by differences alone, where
+///     r_k(xi) = prod_i (1, xi_i + 1/2, xi_i^2 / 2) [k_i];
+/// - a sum of gradients over particles follows from the moments of
+///     q_k(xi) = prod_i xi_i^k_i / k_i!,   d q_k / d xi_i = q_(k - 3^i), or 0 where k_i = 0;
+/// - sums of the functions themselves are taken with these: they are of one sign, and a node with next to no
+///   mass has its sums to round-off, which differences of moments would not give.
+/// T is a number, or a pack with a cell in every lane.
 #pragma once
 
 #include <vsb/physics/quadratic_bspline_basis.hpp>
@@ -39,7 +39,6 @@ KOKKOS_FORCEINLINE_FUNCTION void quadratic_from_nodes(QuadraticPolynomial<Dim, T
         constexpr int at = k + stencil_size(i), above = at + stencil_size(i);
         const T slope = f[at] - f[k];
         f[above] = (f[above] - f[at]) - slope;
-        f[k] += T(0.5) * slope;
         f[at] = slope;
       }
     });
@@ -61,12 +60,15 @@ KOKKOS_FORCEINLINE_FUNCTION void nodes_from_quadratic(QuadraticPolynomial<Dim, T
   });
 }
 
-/// xi and xi^2 / 2 in every direction.
+/// xi, xi + 1/2 and xi^2 / 2 in every direction.
 template <int Dim, class T>
 struct Powers {
-  Vector<Dim, T> first, second;
+  Vector<Dim, T> first, shifted, second;
   KOKKOS_FORCEINLINE_FUNCTION explicit Powers(const Vector<Dim, T>& xi) : first(xi) {
-    static_for<Dim>([&](auto i) VSB_UNROLLED { second[i] = T(0.5) * xi[i] * xi[i]; });
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
+      shifted[i] = xi[i] + T(0.5);
+      second[i] = T(0.5) * xi[i] * xi[i];
+    });
   }
 };
 
@@ -76,7 +78,7 @@ template <int i, int Dim, class T, int N>
 KOKKOS_FORCEINLINE_FUNCTION Vector<N / 3, T> value_along(const Vector<N, T>& c, const Powers<Dim, T>& xi) {
   Vector<N / 3, T> v;
   vsb::static_for<N / 3>([&](auto k) VSB_UNROLLED {
-    v[k] = c[3 * k] + c[3 * k + 1] * xi.first[i] + c[3 * k + 2] * xi.second[i];
+    v[k] = c[3 * k] + c[3 * k + 1] * xi.shifted[i] + c[3 * k + 2] * xi.second[i];
   });
   return v;
 }
@@ -102,7 +104,7 @@ KOKKOS_FORCEINLINE_FUNCTION void gradient_from(const Vector<N, T>& c, const Powe
 }
 }  // namespace detail
 
-/// sum_k c_k q_k(xi).
+/// sum_k c_k r_k(xi).
 template <int Dim, class T>
 KOKKOS_FORCEINLINE_FUNCTION T quadratic_at(const QuadraticPolynomial<Dim, T>& c, const Powers<Dim, T>& xi) {
   return detail::value_from<0>(c, xi);

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include <vsb/kernels/lane_loads.hpp>
+#include <vsb/kernels/spline_lane_step.hpp>
 #include "run/execution_space.hpp"
 #include "run/loads.hpp"
 
@@ -15,15 +16,16 @@ namespace vsb::app {
 /// asks for the cell lanes and cannot have them.
 std::string reason_for_particle_kernels(const Scene& scene);
 
-template <int Dim, class Real>
+/// State: LaneState for linear functions, SplineLaneState for quadratic B-splines.
+template <int Dim, class Real, class State = LaneState<Dim, Real, ExecutionSpace::device_type>>
 class LaneEngine {
  public:
   using Device = ExecutionSpace::device_type;
 
   struct Setup {
-    UniformGrid<Dim, Real> grid;
+    UniformGrid<Dim, Real> grid;  ///< of the scene
     Walls<Dim> walls;
-    BoundaryNodes<Device> tractions;  ///< [node of the grid]: declared
+    BoundaryNodes<Device> tractions;  ///< [node of the basis' grid]: declared
     TractionMask conservative, original;
     int gauss_points;
     Material<Real> material;
@@ -55,7 +57,7 @@ class LaneEngine {
 
   Setup setup_;
   ExecutionSpace exec_;
-  LaneState<Dim, Real, Device> state_;
+  State state_;
   bool prepared_ = false;
 };
 

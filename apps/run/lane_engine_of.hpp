@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The members of LaneEngine, compiled for each dimension and precision on its own.
+/// The members of LaneEngine, compiled for each dimension, precision and state on its own.
 #pragma once
 
 #include <algorithm>
@@ -75,6 +75,19 @@ inline std::vector<size_t> slots_in_use(const std::vector<GroupShape>& groups) {
   return used;
 }
 
+/// The columns of the nodes' sums.
+template <int Dim, class Real, class Device>
+std::vector<int> columns_of_sums(const LaneMemory<Dim, Real, Device>& m) {
+  std::vector<int> columns;
+  for (int plane = 0; plane < (m.lanes.dual ? 3 : 2); ++plane)
+    for (int c = 0; c < m.nodes.sum_columns; ++c)
+      columns.push_back((plane == 0   ? m.nodes.lower_sums
+                         : plane == 1 ? m.nodes.upper_sums
+                                      : m.nodes.middle_sums) +
+                        c);
+  return columns;
+}
+
 /// An array as long as the view.
 template <class View>
 bool read_view(Reader& r, const View& view) {
@@ -86,40 +99,42 @@ bool read_view(Reader& r, const View& view) {
 
 }  // namespace detail
 
-template <int Dim, class Real>
-LaneEngine<Dim, Real>::LaneEngine(const Setup& setup, const Particles<Dim, Real, Device>& particles,
+template <int Dim, class Real, class State>
+LaneEngine<Dim, Real, State>::LaneEngine(const Setup& setup, const Particles<Dim, Real, Device>& particles,
                                   const SurfacePoints<Dim, Real, Device>& surface)
     : setup_(setup) {
-  state_.memory.grid = setup.grid;
+  set_grid(state_, setup.grid);
   state_.memory.walls = setup.walls;
   state_.memory.lanes.state_size = setup.state_size;
   state_.boundary.declared = setup.tractions;
   state_.boundary.conservative = setup.conservative;
   state_.original = setup.original;
   state_.gauss_points = setup.gauss_points;
-  state_.surface = pack_surface_points(exec_, surface, setup.grid);
+  if constexpr (!State::splines) state_.surface = pack_surface_points(exec_, surface, setup.grid);
   pack_lanes(exec_, particles, state_);
 }
 
-template <int Dim, class Real>
-int LaneEngine<Dim, Real>::prepare(const Loads<Dim, Real>& loads) {
-  loads.with_lane_field([&](const auto& field) { prepare_lane_step(exec_, state_, field); });
+template <int Dim, class Real, class State>
+int LaneEngine<Dim, Real, State>::prepare(const Loads<Dim, Real>& loads) {
+  loads.template with_lane_field<!State::splines>([&](const auto& field) { prepare_lane_step(exec_, state_, field); });
   prepared_ = true;
   return add_loads(loads);
 }
 
-template <int Dim, class Real>
-int LaneEngine<Dim, Real>::add_loads(const Loads<Dim, Real>& loads) {
-  if (state_.surface.count() == 0 && state_.original == 0) return -1;
-  const int lost =
-      loads.with_field_beside_lanes([&](const auto& field) { return add_lane_loads(exec_, state_, field); });
+template <int Dim, class Real, class State>
+int LaneEngine<Dim, Real, State>::add_loads(const Loads<Dim, Real>& loads) {
+  if (State::splines || (state_.surface.count() == 0 && state_.original == 0)) return -1;
+  int lost = -1;
+  if constexpr (!State::splines)
+    lost =
+        loads.with_field_beside_lanes([&](const auto& field) { return add_lane_loads(exec_, state_, field); });
   return lost < 0 ? -1 : state_.memory.lanes.particle_count + lost;
 }
 
-template <int Dim, class Real>
-int LaneEngine<Dim, Real>::step(const Loads<Dim, Real>& next) {
+template <int Dim, class Real, class State>
+int LaneEngine<Dim, Real, State>::step(const Loads<Dim, Real>& next) {
   int lost = -1;
-  next.with_lane_field([&](const auto& field) {
+  next.template with_lane_field<!State::splines>([&](const auto& field) {
     std::visit(
         [&](const auto& material, const auto& volume) {
           lost = lane_step(exec_, state_, material, volume, field, setup_.options);
@@ -129,8 +144,8 @@ int LaneEngine<Dim, Real>::step(const Loads<Dim, Real>& next) {
   return lost < 0 ? add_loads(next) : lost;
 }
 
-template <int Dim, class Real>
-void LaneEngine<Dim, Real>::unpack(const Particles<Dim, Real, Device>& particles,
+template <int Dim, class Real, class State>
+void LaneEngine<Dim, Real, State>::unpack(const Particles<Dim, Real, Device>& particles,
                                    const SurfacePoints<Dim, Real, Device>& surface) const {
   unpack_particles(exec_, state_.memory, particles);
   unpack_homeless(exec_, state_.memory, particles);
@@ -138,26 +153,26 @@ void LaneEngine<Dim, Real>::unpack(const Particles<Dim, Real, Device>& particles
   exec_.fence();
 }
 
-template <int Dim, class Real>
-int LaneEngine<Dim, Real>::boundary_nodes() const {
-  return count_loaded_nodes(exec_, state_.memory.lanes, state_.boundary);
+template <int Dim, class Real, class State>
+int LaneEngine<Dim, Real, State>::boundary_nodes() const {
+  return count_loaded_nodes(exec_, state_);
 }
 
-template <int Dim, class Real>
-size_t LaneEngine<Dim, Real>::bytes() const {
+template <int Dim, class Real, class State>
+size_t LaneEngine<Dim, Real, State>::bytes() const {
   const auto bytes = [](const auto&... views) { return (... + (views.span() * sizeof(*views.data()))); };
   const auto& l = state_.memory.lanes;
   const auto& n = state_.memory.nodes;
   const auto& b = state_.boundary;
   const auto& p = state_.surface;
-  return bytes(l.data, l.id, l.held, l.mass_matrices, l.groups, l.layer_first, l.plane_first, l.group_at,
+  return bytes(l.data, l.id, l.held, l.mass_matrices, l.groups, l.stencils, l.layer_first, l.plane_first, l.group_at,
                l.chunk_at, n.data, n.fixed, b.bits.occupied, b.bits.exterior, b.bits.boundary, b.marked,
                b.active, b.tractions, p.cell, p.xi, p.area, p.tractions, p.carrier, p.order, p.run_cell,
                p.run_first, p.cell_count);
 }
 
-template <int Dim, class Real>
-std::vector<unsigned char> LaneEngine<Dim, Real>::save() const {
+template <int Dim, class Real, class State>
+std::vector<unsigned char> LaneEngine<Dim, Real, State>::save() const {
   const auto& m = state_.memory;
   const auto& l = m.lanes;
   const size_t entries = static_cast<size_t>(l.slot_count) * l.width,
@@ -191,7 +206,7 @@ std::vector<unsigned char> LaneEngine<Dim, Real>::save() const {
     w.array(column.data(), column.size());
   }
   const auto sums = detail::on_host(m.nodes.data);
-  for (int c = 0; c < 2 * m.nodes.sum_columns; ++c) w.array(&sums(0, static_cast<size_t>(c)), nodes);
+  for (const int c : detail::columns_of_sums(m)) w.array(&sums(0, static_cast<size_t>(c)), nodes);
   w.array(detail::on_host(l.mass_matrices).data(), l.mass_matrices.size());
   const auto& p = state_.surface;
   if (p.count() > 0) {
@@ -202,8 +217,8 @@ std::vector<unsigned char> LaneEngine<Dim, Real>::save() const {
   return std::move(w.result);
 }
 
-template <int Dim, class Real>
-bool LaneEngine<Dim, Real>::restore(const std::vector<unsigned char>& saved) {
+template <int Dim, class Real, class State>
+bool LaneEngine<Dim, Real, State>::restore(const std::vector<unsigned char>& saved) {
   detail::Reader r(saved);
   auto& m = state_.memory;
   int width = 0, groups = 0, slots = 0, nodes = 0, slack = 0, since = 0, flow = 0;
@@ -254,7 +269,7 @@ bool LaneEngine<Dim, Real>::restore(const std::vector<unsigned char>& saved) {
   }
   Kokkos::deep_copy(l.data, data);
   const auto sums = Kokkos::create_mirror_view(m.nodes.data);
-  for (int c = 0; c < 2 * m.nodes.sum_columns; ++c)
+  for (const int c : detail::columns_of_sums(m))
     if (!r.array(&sums(0, static_cast<size_t>(c)), static_cast<size_t>(nodes))) return false;
   Kokkos::deep_copy(m.nodes.data, sums);
   if (!detail::read_view(r, l.mass_matrices)) return false;

@@ -444,12 +444,17 @@ class SimulationOf final : public Simulation {
     loads_begin_ = staged.loads_begin;
   }
 
-  static constexpr bool has_lanes = std::is_same_v<Basis, LinearBasis<Dim, Real>>;
+  static constexpr bool has_splines = std::is_same_v<Basis, QuadraticBSplineBasis<Dim, Real>>;
+  static constexpr bool has_lanes = has_splines || std::is_same_v<Basis, LinearBasis<Dim, Real>>;
+  using Engine =
+      LaneEngine<Dim, Real,
+                 std::conditional_t<has_splines, SplineLaneState<Dim, Real, ExecutionSpace::device_type>,
+                                    LaneState<Dim, Real, ExecutionSpace::device_type>>>;
 
   /// Packs the particles into cell lanes.
   void pack() {
-    typename LaneEngine<Dim, Real>::Setup setup;
-    setup.grid = basis_.grid;
+    typename Engine::Setup setup;
+    setup.grid = uniform_grid<Dim, Real>(scene_.grid);
     for (int i = 0; i < Dim; ++i)
       for (int side = 0; side < 2; ++side)
         setup.walls.fixed[i][side] = scene_.faces.fixed[static_cast<size_t>(i)][static_cast<size_t>(side)];
@@ -462,7 +467,7 @@ class SimulationOf final : public Simulation {
     setup.options = options_;
     packed_ = false;
     lanes_.reset();  // its memory first
-    lanes_ = std::make_unique<LaneEngine<Dim, Real>>(setup, state_.particles, state_.surface);
+    lanes_ = std::make_unique<Engine>(setup, state_.particles, state_.surface);
   }
   /// Brings the particles back from the lanes, where they moved there.
   void unpack() const {
@@ -797,7 +802,7 @@ class SimulationOf final : public Simulation {
   long long step_ = 0, loads_begin_ = 0;
   std::vector<int> ids_;  ///< of the particles that are left; empty before a removal
   std::string particle_kernels_because_;
-  std::unique_ptr<LaneEngine<Dim, Real>> lanes_;
+  std::unique_ptr<Engine> lanes_;
   mutable bool packed_ = false;  ///< whether the particles moved on in lanes_ alone
 };
 

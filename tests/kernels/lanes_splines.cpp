@@ -3,9 +3,9 @@
 /// 100 steps on cell lanes with quadratic B-splines are 100 steps of the particle kernels: without load, under
 /// virtual stresses of all kinds, at rest and moving, with gravity, damping and walls that mirror.
 #include <cstdio>
-#include <vsb/physics/traction_fields.hpp>
 
 #include "both_engines.hpp"
+#include "four_fields.hpp"
 
 using namespace vsb;
 using namespace vsb::test;
@@ -62,12 +62,8 @@ std::uint64_t state_hash() {
 
 }  // namespace
 
-#ifndef ONLY
-#define ALL (1, double), (2, double), (3, double), (1, float), (2, float), (3, float)
-#else
-#define ALL ONLY
-#endif
-TEMPLATE_TEST_CASE_SIG("splines: free bodies", "", ((int Dim, typename Real), Dim, Real), ALL) {
+TEMPLATE_TEST_CASE_SIG("splines: free bodies", "", ((int Dim, typename Real), Dim, Real), (1, double),
+                       (2, double), (3, double), (2, float), (3, float)) {
   for (const bool cubic : {true, false})
     for (const double drift : {0., 1.}) {
       if (sizeof(Real) == 4 && drift > 0) continue;
@@ -83,7 +79,8 @@ TEMPLATE_TEST_CASE_SIG("splines: free bodies", "", ((int Dim, typename Real), Di
 }
 
 TEMPLATE_TEST_CASE_SIG("splines: bodies under a pressure and under any uniform tensor", "",
-                       ((int Dim, typename Real), Dim, Real), ALL) {
+                       ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (3, double),
+                       (2, float), (3, float)) {
   for (const bool pressure : {true, false}) {
     const double drift = sizeof(Real) == 4 ? 0 : pressure ? 0.5 : 1;
     Engines<Dim, Real> engines({pressure, drift});
@@ -107,7 +104,8 @@ TEMPLATE_TEST_CASE_SIG("splines: bodies under a pressure and under any uniform t
 }
 
 TEMPLATE_TEST_CASE_SIG("splines: tractions that change from node to node, some conservative", "",
-                       ((int Dim, typename Real), Dim, Real), ALL) {
+                       ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (3, double),
+                       (2, float), (3, float)) {
   for (const TractionMask conservative : {0u, 2u}) {
     Engines<Dim, Real> engines({true, sizeof(Real) == 4 ? 0. : 1.});
     engines.declare([](const Vector<Dim, int>& ijk) { return striped<Dim>(ijk); });
@@ -123,7 +121,8 @@ TEMPLATE_TEST_CASE_SIG("splines: tractions that change from node to node, some c
 }
 
 TEMPLATE_TEST_CASE_SIG("splines: a body that slides along a wall and one held by it", "",
-                       ((int Dim, typename Real), Dim, Real), ALL) {
+                       ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (3, double),
+                       (2, float), (3, float)) {
   for (const int held : {1, (1 << Dim) - 1}) {
     Engines<Dim, Real> engines({false, 0, true});
     engines.lanes.memory.walls.fixed[0][0] = static_cast<ComponentMask>(held);
@@ -144,4 +143,71 @@ TEMPLATE_TEST_CASE_SIG("splines: a body that slides along a wall and one held by
     check_same(engines);
     engines.check_boundary();
   }
+}
+
+TEMPLATE_TEST_CASE_SIG("splines: fields of all kinds, other ones from node to node", "",
+                       ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (3, double),
+                       (2, float)) {
+  for (const bool mixed : {false, true}) {
+    Engines<Dim, Real> engines({!mixed, sizeof(Real) == 4 ? 0. : 1.5});
+    const auto f = four_fields<Dim, Real>(engines.grid, engines.amplitude);
+    if (mixed) {
+      engines.declare([](const Vector<Dim, int>& ijk) {
+        TractionMask mask = 0;
+        for (int i = 0; i < Dim; ++i) mask |= 1u << ((ijk[i] + i + 4) / 2 % 5);  // bit 4: no field has it
+        return mask;
+      });
+      engines.conservative = 4;
+    } else {
+      engines.declare_everywhere(15);
+    }
+    engines.run(elastic<Dim, Real>(), DeterminantVolume{}, [&](int n) {
+      auto now = f;
+      for (int k = 0; k < 4; ++k) now.factor[k] *= static_cast<Real>(0.01 * n);
+      return now;
+    });
+    CAPTURE(mixed, engines.moved);
+    check_same(engines);
+    engines.check_boundary();
+    CHECK(engines.load_seen[static_cast<int>(GroupLoad::mixed)] == mixed);
+  }
+}
+
+TEMPLATE_TEST_CASE_SIG("splines: more particles in a cell than the sums take at a time", "",
+                       ((int Dim), Dim), 1, 2, 3) {
+  // 40 in each of a few cells, as some packings have them.
+  Engines<Dim, double> engines({false, 0.3});
+  const auto before = read(engines.block);
+  const int n = before.count();
+  auto crowd = [&](const auto& p) {
+    for (int k = 0; k < n; ++k) {
+      const int cell = k / 40 % 5;
+      for (int i = 0; i < Dim; ++i) {
+        const double within = (p.position(k, i) - engines.grid.lower[i]) * engines.grid.inverse_spacing[i];
+        p.position(k, i) = engines.grid.lower[i] +
+                           engines.grid.spacing[i] * (4 + cell + within - std::floor(within));
+      }
+      p.volume(k) /= 10;
+      p.mass(k) /= 10;
+    }
+  };
+  edit(engines.block, crowd);
+  engines.declare_everywhere(1);
+  UniformVirtualStress<Dim, double> f;
+  f.count = 1;
+  f.stress[0] = full_tensor<Dim, double>();
+  engines.run(
+      elastic<Dim, double>(), DeterminantVolume{}, [&](int) { return f; }, 50);
+  const auto groups = read(engines.lanes.memory.lanes.groups);
+  int most = 0;
+  for (int g = 0; g < engines.lanes.memory.lanes.group_count; ++g) most = std::max(most, groups(g).slots);
+  CHECK(most > spline_sums::block_slots);
+  check_same(engines);
+  engines.check_boundary();
+}
+
+TEST_CASE("print state hashes of splines on cell lanes", "[.][state_hashes]") {  // run by kernels/same_bits.py
+  for (const std::uint64_t hash :
+       {state_hash<1, double>(), state_hash<2, double>(), state_hash<3, double>(), state_hash<3, float>()})
+    std::printf("hash of splines %016llx\n", static_cast<unsigned long long>(hash));
 }

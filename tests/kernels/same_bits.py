@@ -15,8 +15,8 @@ def hashes(program, threads):
 
 
 reference = hashes(sys.argv[1], 1)
-if len(reference) != 11 or len(set(reference)) != 11:  # 3 of the particle kernels, 8 of cell lanes
-    sys.exit(f"same_bits: expected eleven different hashes, got {reference}")
+if len(reference) != 15 or len(set(reference)) != 15:  # 3 of the particle kernels, 12 of cell lanes
+    sys.exit(f"same_bits: expected fifteen different hashes, got {reference}")
 for threads in (1, 2, 3, 4, 8):
     found = hashes(sys.argv[1], threads)
     if found != reference:
