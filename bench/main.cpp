@@ -55,7 +55,10 @@ int main(int argc, char** argv) {
   register_kernels();
   register_steps();
   register_extra_cost();
-  if constexpr (runs_on_host) register_lanes();
+  if constexpr (runs_on_host) {
+    register_lanes();
+    register_spline_lanes();
+  }
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   Kokkos::finalize();

@@ -85,5 +85,6 @@ void register_kernels();
 void register_steps();
 void register_extra_cost();
 void register_lanes();
+void register_spline_lanes();
 
 }  // namespace vsb::bench

@@ -162,15 +162,15 @@ struct NumberNodes {
   CellLanes<Dim, Real, Device> lanes;
 
   KOKKOS_FUNCTION void operator()(int, int& nodes) const {
-    constexpr int width = Lanes<Real>::width, corner_rows = LaneGroup<Dim>::corner_rows;
-    const int per_row = lanes.groups_per_row();
+    constexpr int width = Lanes<Real>::width;
+    const int per_row = lanes.groups_per_row(), rows = lanes.node_rows_of_cell();
     int layer = 0;
     for (int g = 0; g < lanes.group_count; ++g) {
       const auto& of = lanes.groups(g);
       while (layer <= of.row / lanes.rows_per_layer()) lanes.layer_first(layer++) = g;
       lanes.group_at(of.row * per_row + of.x) = g;
-      for (int c = 0; c < corner_rows; ++c) {
-        const int chunk = lanes.node_row(of.row, c) * (per_row + 1) + of.x;
+      for (int c = 0; c < rows; ++c) {
+        const int chunk = lanes.node_row_of_cell(of.row, c) * (per_row + 1) + of.x;
         lanes.chunk_at(chunk) = lanes.chunk_at(chunk + 1) = 0;
       }
     }
@@ -184,9 +184,10 @@ struct NumberNodes {
     }
     lanes.plane_first(chunks / chunks_per_plane) = chunk * width;
     for (int g = 0; g < lanes.group_count; ++g)
-      for (int c = 0; c < corner_rows; ++c) {
+      for (int c = 0; c < rows; ++c) {
         auto& of = lanes.groups(g);
-        of.node[c] = lanes.chunk_at(lanes.node_row(of.row, c) * (per_row + 1) + of.x) * width;
+        const int node = lanes.chunk_at(lanes.node_row_of_cell(of.row, c) * (per_row + 1) + of.x) * width;
+        (lanes.dual ? lanes.stencils(g).node[c] : of.node[c]) = node;
       }
     nodes = chunk * width;
   }
@@ -273,7 +274,7 @@ template <int Dim, class Real, class Device>
 struct FixLaneNodes {
   CellLanes<Dim, Real, Device> lanes;
   LaneNodes<Dim, Real, Device> nodes;
-  Vector<Dim, int> grid_cells;
+  Vector<Dim, int> last;  ///< node of the grid
   Walls<Dim> walls;
 
   KOKKOS_FUNCTION void operator()(int place) const {
@@ -281,19 +282,20 @@ struct FixLaneNodes {
     const int chunk = lanes.chunk_at(place);
     if (chunk < 0) return;
     const int per_row = lanes.groups_per_row() + 1, row = place / per_row;
-    Vector<Dim, int> ijk;
-    if constexpr (Dim == 2) ijk[1] = lanes.box.first[1] + row;
+    const auto lowest = lanes.lowest_node();
+    auto ijk = lowest;
+    if constexpr (Dim == 2) ijk[1] += row;
     if constexpr (Dim == 3) {
-      ijk[1] = lanes.box.first[1] + row % lanes.node_rows_per_plane();
-      ijk[2] = lanes.box.first[2] + row / lanes.node_rows_per_plane();
+      ijk[1] += row % lanes.node_rows_per_plane();
+      ijk[2] += row / lanes.node_rows_per_plane();
     }
     for (int i = 0; i < Dim; ++i) nodes.fixed(chunk, i) = 0;
     for (int l = 0; l < width; ++l) {
-      ijk[0] = lanes.box.first[0] + place % per_row * width + l;
+      ijk[0] = lowest[0] + place % per_row * width + l;
       ComponentMask fixed = 0;
       for (int i = 0; i < Dim; ++i) {
         if (ijk[i] == 0) fixed = static_cast<ComponentMask>(fixed | walls.fixed[i][0]);
-        if (ijk[i] == grid_cells[i]) fixed = static_cast<ComponentMask>(fixed | walls.fixed[i][1]);
+        if (ijk[i] == last[i]) fixed = static_cast<ComponentMask>(fixed | walls.fixed[i][1]);
       }
       for (int i = 0; i < Dim; ++i)
         if (fixed >> i & 1) nodes.fixed(chunk, i) |= std::uint32_t(1) << l;
@@ -376,6 +378,15 @@ void allocate_numbers(CellLanes<Dim, Real, Device>& lanes, int slots) {
   lanes.held = decltype(lanes.held)("vsb::lanes_held", static_cast<size_t>(slots));
 }
 
+/// The last nodes of the scene's grid: dual cells are one more than its cells.
+template <int Dim, class Real, class Device>
+Vector<Dim, int> last_nodes(const LaneMemory<Dim, Real, Device>& m) {
+  auto last = m.grid.cells;
+  if (m.lanes.dual)
+    for (int i = 0; i < Dim; ++i) --last[i];
+  return last;
+}
+
 /// The nodes of lanes whose box and groups are known.
 template <class Exec, int Dim, class Real, class Device>
 void number_nodes(const Exec& exec, LaneMemory<Dim, Real, Device>& m) {
@@ -390,6 +401,8 @@ void number_nodes(const Exec& exec, LaneMemory<Dim, Real, Device>& m) {
   lanes.chunk_at = ints("vsb::chunk_at", chunks);
   Kokkos::deep_copy(exec, lanes.group_at, -1);
   Kokkos::deep_copy(exec, lanes.chunk_at, -1);
+  if (lanes.dual)
+    lanes.stencils = decltype(lanes.stencils)("vsb::lane_stencils", static_cast<size_t>(lanes.group_count));
   int node_count = 0;
   Kokkos::parallel_reduce("vsb::number_nodes", Kokkos::RangePolicy<Exec>(exec, 0, 1),
                           kernel::NumberNodes<Dim, Real, Device>{lanes}, node_count);
@@ -398,14 +411,14 @@ void number_nodes(const Exec& exec, LaneMemory<Dim, Real, Device>& m) {
   if (static_cast<int>(m.nodes.data.extent(0)) < node_count) {
     m.nodes.data = decltype(m.nodes.data)(
         "vsb::lane_nodes", static_cast<size_t>(padded_rows<Real>(node_count + node_count / 16)),
-        static_cast<size_t>(m.nodes.column_count));
+        static_cast<size_t>(lanes.dual ? m.nodes.dual_column_count : m.nodes.column_count));
     m.nodes.fixed = decltype(m.nodes.fixed)("vsb::lane_nodes_fixed",
                                             m.nodes.data.extent(0) / static_cast<size_t>(lanes.width));
   } else {
     Kokkos::deep_copy(exec, m.nodes.data, Real(0));
   }
   Kokkos::parallel_for("vsb::fix_lane_nodes", Kokkos::RangePolicy<Exec>(exec, 0, chunks),
-                       kernel::FixLaneNodes<Dim, Real, Device>{lanes, m.nodes, m.grid.cells, m.walls});
+                       kernel::FixLaneNodes<Dim, Real, Device>{lanes, m.nodes, last_nodes(m), m.walls});
 }
 
 /// Groups and nodes for a box and the number of particles in each of its cells; the columns and numbers of

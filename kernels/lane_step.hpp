@@ -17,6 +17,8 @@ namespace vsb {
 /// What a step on cell lanes works on.
 template <int Dim, class Real, class Device>
 struct LaneState {
+  static constexpr bool splines = false;
+  using device = Device;
   LaneMemory<Dim, Real, Device> memory;
   LaneBoundary<Dim, Device> boundary;
   LaneSurfacePoints<Dim, Real, Device> surface;  ///< none, unless a traction is imposed on points
@@ -82,6 +84,18 @@ void sum_lanes(const Exec& exec, const LaneState<Dim, Real, Device>& s, const Fi
 
 }  // namespace detail
 
+/// The grid of the scene; before packing.
+template <int Dim, class Real, class Device>
+void set_grid(LaneState<Dim, Real, Device>& s, const UniformGrid<Dim, Real>& grid) {
+  s.memory.grid = grid;
+}
+
+/// Nodes at which a traction acts. Waits for the device.
+template <class Exec, int Dim, class Real, class Device>
+int count_loaded_nodes(const Exec& exec, const LaneState<Dim, Real, Device>& s) {
+  return count_loaded_nodes(exec, s.memory.lanes, s.boundary);
+}
+
 /// Marks the boundary of lanes that were packed anew.
 template <class Exec, int Dim, class Real, class Device>
 void mark_packed_lanes(const Exec& exec, LaneState<Dim, Real, Device>& s) {
@@ -92,6 +106,12 @@ void mark_packed_lanes(const Exec& exec, LaneState<Dim, Real, Device>& s) {
 }
 
 namespace detail {
+
+/// Whether cells turned void or filled in a step in which so many particles left theirs.
+template <class Exec, int Dim, class Real, class Device>
+bool cells_changed(const Exec& exec, const LaneState<Dim, Real, Device>& s, int leavers) {
+  return leavers > 0 && update_occupied(exec, s.memory.lanes, s.boundary);
+}
 
 /// Marks the boundary anew where a field acts and cells turned void or filled; whether that was so.
 template <class Field, class Exec, int Dim, class Real, class Device>
@@ -134,6 +154,50 @@ void make_more_room(LaneState<Dim, Real, Device>& s, const HomelessCount& homele
   }
   ++s.repacked;
 }
+
+namespace detail {
+
+/// After the sweeps of a step: brings the leavers to their cells, marks the boundary, and sums up where that
+/// is not done yet (`summed`: by the last sweep). Returns what lane_step does. Other states than LaneState
+/// have their own mark_packed_lanes, cells_changed, bring_marks_up_to_date and sum_lanes.
+template <class Exec, class Field, class State>
+int settle_leavers(const Exec& exec, State& s, const Field& next_virtual_stress, bool summed) {
+  auto& m = s.memory;
+  ++s.steps_since_repacked;
+  const int leavers = count_leavers(exec, m);
+  s.steps_of_flow = leavers > m.lanes.particle_count / 50 ? math::min(s.steps_of_flow + 1, 2) : 0;
+  int unsummed = 0;  // layers, of leavers.unsummed
+  if (leavers > 0) {
+    // Holes cost as much as particles; to close them costs as much as a particle's way.
+    const bool closing = s.steps_since_repacked % 8 == 0;
+    const auto homeless = take_in_leavers(exec, m, next_virtual_stress, s.boundary.tractions, closing);
+    if (homeless.any()) {
+      make_more_room(s, homeless);
+      // Where particles flow, there are groups where the body is about to be.
+      const int lost = repack_lanes(exec, m, homeless.without_group > 0 && s.steps_since_repacked < 100);
+      s.steps_since_repacked = 0;
+      if (lost >= 0) return lost;
+      mark_packed_lanes(exec, s);
+      sum_lanes(exec, s, next_virtual_stress);
+      return -1;
+    }
+    unsummed = homeless.unsummed_layers;
+  }
+  if (cells_changed(exec, s, leavers)) s.unmarked = true;
+  const bool reloaded = bring_marks_up_to_date<Field>(exec, s) && Field::loaded;
+  if (unsummed > 0 && reloaded)
+    Kokkos::parallel_for("vsb::join_layers", Kokkos::RangePolicy<Exec>(exec, 0, m.lanes.layers()),
+                         kernel::JoinLayers<typename State::device>{m.leavers.unsummed, s.boundary.stale});
+  if (leavers == 0 && !summed)
+    sum_lanes(exec, s, next_virtual_stress);
+  else if (unsummed > 0)
+    sum_lanes(exec, s, next_virtual_stress, m.leavers.unsummed);
+  else if (reloaded)
+    sum_lanes(exec, s, next_virtual_stress, s.boundary.stale);
+  return -1;
+}
+
+}  // namespace detail
 
 /// Sums up for the first step, or anew after a change of loads; `virtual_stress` is the field at the end of
 /// the step to come. After a change of declarations mark_packed_lanes must come first.
@@ -180,35 +244,7 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
             and_sum});
   });
   move_surface_points(exec, m, s.surface);
-  ++s.steps_since_repacked;
-  const int leavers = count_leavers(exec, m);
-  s.steps_of_flow = leavers > m.lanes.particle_count / 50 ? math::min(s.steps_of_flow + 1, 2) : 0;
-  if (leavers == 0) {
-    if (!and_sum) detail::sum_lanes(exec, s, next_virtual_stress);
-    return -1;
-  }
-  // Holes cost as much as particles; to close them costs as much as a particle's way.
-  const bool closing = s.steps_since_repacked % 8 == 0;
-  const auto homeless = take_in_leavers(exec, m, next_virtual_stress, s.boundary.tractions, closing);
-  if (homeless.any()) {
-    make_more_room(s, homeless);
-    // Where particles flow, there are groups where the body is about to be.
-    const int lost = repack_lanes(exec, m, homeless.without_group > 0 && s.steps_since_repacked < 100);
-    s.steps_since_repacked = 0;
-    if (lost >= 0) return lost;
-    mark_packed_lanes(exec, s);
-    detail::sum_lanes(exec, s, next_virtual_stress);
-    return -1;
-  }
-  if (update_occupied(exec, m.lanes, s.boundary)) s.unmarked = true;
-  const bool marked = detail::bring_marks_up_to_date<Field>(exec, s);
-  const bool reloaded = marked && Field::loaded;
-  if (reloaded)
-    Kokkos::parallel_for("vsb::join_layers", Kokkos::RangePolicy<Exec>(exec, 0, m.lanes.layers()),
-                         kernel::JoinLayers<Device>{m.leavers.unsummed, s.boundary.stale});
-  if (reloaded || homeless.unsummed_layers > 0)
-    detail::sum_lanes(exec, s, next_virtual_stress, m.leavers.unsummed);
-  return -1;
+  return detail::settle_leavers(exec, s, next_virtual_stress, and_sum);
 }
 
 }  // namespace vsb

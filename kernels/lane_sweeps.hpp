@@ -280,7 +280,7 @@ struct MoveGroup {
       auto cell = before;
       Vector<Dim, Real> here;
       for (int i = 0; i < Dim; ++i) here[i] = xi[i][l];
-      if (!to_next_cell(grid, cell, here)) continue;
+      if (!to_next_cell(grid, cell, here, lanes.dual ? Real(0.5) : Real(0))) continue;
       for (int i = 0; i < Dim; ++i) xi[i].set(l, here[i]);
       const LaneMask lane = LaneMask(1) << l;
       const int layers = Dim == 1 ? 0 : cell[Dim - 1] - before[Dim - 1];
@@ -291,6 +291,15 @@ struct MoveGroup {
     return leaving;
   }
 };
+
+/// As many particles of a layer as may leave it before its sums are made anew.
+template <int Dim, class Real, class Device>
+KOKKOS_FUNCTION int few_leavers(const CellLanes<Dim, Real, Device>& lanes, int layer) {
+  int slots = 0;
+  for (int g = lanes.layer_first(layer); g < lanes.layer_first(layer + 1); ++g)
+    slots += lanes.groups(g).slots;
+  return slots * lanes.width / 16;
+}
 
 /// Sweep C, and A of the next step. Where many particles leave their cells, another sweep after they arrived
 /// costs less than to add them to the sums one by one: a layer that finds so many does not go on with A.
@@ -305,7 +314,7 @@ struct MoveLanes {
     auto& lost = move.leavers.lost(layer);
     move.leavers.count(layer) = lost = 0;
     int g = on.lanes.layer_first(layer);
-    const int end = on.lanes.layer_first(layer + 1), few = and_sum ? few_of(g, end) : -1;
+    const int end = on.lanes.layer_first(layer + 1), few = and_sum ? few_leavers(on.lanes, layer) : -1;
     if (and_sum) {
       StepSums<Dim, Real, Device> sums(move.nodes);
       for (; g < end && lost <= few; ++g) {
@@ -319,11 +328,6 @@ struct MoveLanes {
     }
     for (; g < end; ++g) accelerate_and_move(on.lanes.groups(g), layer);
     move.leavers.many(layer) = lost > few;
-  }
-  KOKKOS_FUNCTION int few_of(int g, int end) const {
-    int slots = 0;
-    for (; g < end; ++g) slots += on.lanes.groups(g).slots;
-    return slots * on.lanes.width / 16;
   }
   KOKKOS_FORCEINLINE_FUNCTION void accelerate_and_move(const LaneGroup<Dim>& group, int layer) const {
     if (on.lanes.one_sweep()) accelerate_apart(group);

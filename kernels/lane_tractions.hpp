@@ -8,6 +8,7 @@
 /// squared too. Any other field is evaluated at the particles.
 #pragma once
 
+#include <vsb/kernels/lane_masks.hpp>
 #include <vsb/kernels/lane_sums.hpp>
 #include <vsb/physics/stress_fields.hpp>
 #include <vsb/physics/uniform_grid.hpp>
@@ -29,27 +30,7 @@ namespace lane_sums {
 template <int Dim, class Real, class Device, class Work>
 KOKKOS_FORCEINLINE_FUNCTION void for_each_mask(const LoadedLanes<Dim, Real, Device>& on,
                                                const LaneGroup<Dim>& group, const Work& work) {
-  constexpr int rows = LaneGroup<Dim>::corner_rows, width = Lanes<Real>::width;
-  if (group.load != GroupLoad::mixed) {
-    work(group.tractions, group.loaded);
-    return;
-  }
-  std::uint64_t left[rows];
-  for (int r = 0; r < rows; ++r) left[r] = group.loaded[r];
-  while (true) {
-    TractionMask mask = 0;
-    for (int r = 0; r < rows && mask == 0; ++r)
-      for (int l = 0; l <= width && mask == 0; ++l)
-        if (left[r] >> l & 1) mask = on.tractions(group.node[r] + l);
-    if (mask == 0) return;
-    std::uint64_t bits[rows] = {};
-    for (int r = 0; r < rows; ++r) {
-      for (int l = 0; l <= width; ++l)
-        if ((left[r] >> l & 1) && on.tractions(group.node[r] + l) == mask) bits[r] |= std::uint64_t(1) << l;
-      left[r] &= ~bits[r];
-    }
-    work(mask, bits);
-  }
+  vsb::for_each_mask(group, group.node, group.loaded, on.tractions, work);
 }
 
 /// Adds t_a to f_a at the nodes whose bit is set; both are at the nodes.

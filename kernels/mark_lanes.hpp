@@ -15,7 +15,8 @@ namespace vsb {
 template <int Dim, class Device>
 struct LaneBoundary {
   using Rows = typename CellBits<Device>::Rows;
-  CellBits<Device> bits;               ///< of the box; bits.occupied is kept up to date by every sweep
+  CellBits<Device> bits;               ///< of the box; bits.occupied is kept up to date by every sweep. With
+                                       ///< dual cells, of the grid's cells from the lowest node of the box on
   Rows marked, active;                 ///< [row of nodes of the box][word]: N1, and nodes with mass
   Kokkos::View<int*, Device> changed;  ///< [row of nodes]: 1 where tractions changed
   Kokkos::View<int*, Device> stale;    ///< [layer]: 1 where the load of a group changed with the last marking
@@ -56,17 +57,19 @@ struct MarkLaneNodes {
   CellLanes<Dim, Real, Device> lanes;
   LaneBoundary<Dim, Device> boundary;
   BitRows<Dim> tiling;
-  Vector<Dim, int> grid_cells;
-  bool anew;  ///< whether or not anything changed
+  Vector<Dim, int> grid_cells;  ///< of the grid at whose nodes tractions are declared
+  bool anew;                    ///< whether or not anything changed
+  int reach;                    ///< of the basis
 
   KOKKOS_FUNCTION void operator()(int r) const {
     const Vector<2, int> at{{r % tiling.node_rows[0], r / tiling.node_rows[0]}};
-    const Vector<2, int> from{{at[0] - 1, at[1] - 1}};
+    const Vector<2, int> from{{at[0] - 1 - reach, at[1] - 1 - reach}}, to{{at[0] + reach, at[1] + reach}};
     boundary.changed(r) = 0;
     for (int w = 0; w < tiling.words; ++w) {
-      const std::uint64_t active =
-          tiling.existing(at, w, 1) & dilated_word(boundary.bits.occupied, tiling, w, from, at, 0, 1);
-      const std::uint64_t marked = active & dilated_word(boundary.bits.boundary, tiling, w, from, at, 0, 1);
+      const std::uint64_t active = tiling.existing(at, w, 1) & dilated_word(boundary.bits.occupied, tiling, w,
+                                                                            from, to, reach, 1 + reach);
+      const std::uint64_t marked =
+          active & dilated_word(boundary.bits.boundary, tiling, w, from, to, reach, 1 + reach);
       if (!anew && marked == boundary.marked(r, w) && active == boundary.active(r, w)) continue;
       boundary.marked(r, w) = marked;
       boundary.active(r, w) = active;
@@ -106,27 +109,41 @@ struct LoadGroup {
   LaneBoundary<Dim, Device> boundary;
 
   KOKKOS_FUNCTION void operator()(int g) const {
-    constexpr int width = Lanes<Real>::width, rows = LaneGroup<Dim>::corner_rows;
     auto& group = lanes.groups(g);
     bool changed = false;
-    for (int r = 0; r < rows; ++r) changed = changed || boundary.changed(lanes.node_row(group.row, r)) != 0;
+    for (int r = 0; r < lanes.node_rows_of_cell(); ++r)
+      changed = changed || boundary.changed(lanes.node_row_of_cell(group.row, r)) != 0;
     if (!changed) return;
-    const auto before = group;
+    if (lanes.dual)
+      load(group, lanes.stencils(g).node, lanes.stencils(g).loaded, 3);
+    else
+      load(group, group.node, group.loaded, 2);
+  }
+  /// A cell has `along` nodes along x.
+  template <int rows>
+  KOKKOS_FUNCTION void load(LaneGroup<Dim>& group, const int (&node)[rows], std::uint64_t (&loaded)[rows],
+                            int along) const {
+    constexpr int width = Lanes<Real>::width;
+    const auto load_before = group.load;
+    const auto tractions_before = group.tractions;
     TractionMask common = 0;
-    bool same = true;
+    bool same = true, other = false;
     std::uint64_t all = ~std::uint64_t(0), any = 0;
     for (int r = 0; r < rows; ++r) {
-      group.loaded[r] = 0;
-      for (int l = 0; l <= width; ++l) {
-        const TractionMask mask = boundary.tractions(group.node[r] + l);
+      std::uint64_t bits = 0;
+      for (int l = 0; l < width + along - 1; ++l) {
+        const TractionMask mask = boundary.tractions(node[r] + l);
         if (mask == 0) continue;
-        group.loaded[r] |= std::uint64_t(1) << l;
+        bits |= std::uint64_t(1) << l;
         if (common == 0) common = mask;
         same = same && mask == common;
       }
-      const auto left_and_right = group.loaded[r] & group.loaded[r] >> 1;
-      all &= left_and_right;
-      any |= group.loaded[r] | group.loaded[r] >> 1;
+      other = other || bits != loaded[r];
+      loaded[r] = bits;
+      for (int a = 0; a < along; ++a) {
+        all &= bits >> a;
+        any |= bits >> a;
+      }
     }
     constexpr auto cells = static_cast<std::uint64_t>(-1) >> (64 - width);
     group.tractions = common;
@@ -134,10 +151,9 @@ struct LoadGroup {
                  : !same                          ? GroupLoad::mixed
                  : (all & cells) == (any & cells) ? GroupLoad::whole
                                                   : GroupLoad::part;
-    bool other =
-        group.load == GroupLoad::mixed || group.load != before.load || group.tractions != before.tractions;
-    for (int r = 0; r < rows; ++r) other = other || group.loaded[r] != before.loaded[r];
-    if (other) boundary.stale(group.row / lanes.rows_per_layer()) = 1;
+    if (other || group.load == GroupLoad::mixed || group.load != load_before ||
+        group.tractions != tractions_before)
+      boundary.stale(group.row / lanes.rows_per_layer()) = 1;
   }
 };
 
@@ -187,6 +203,28 @@ bool update_occupied(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes
   return changes > 0;
 }
 
+/// From bits.occupied, which `tiling` describes, to the tractions of nodes. anew: after packing anew, or
+/// where a declaration changed. reach: of the basis.
+template <class Exec, int Dim, class Real, class Device>
+void mark_nodes(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes, const BitRows<Dim>& tiling,
+                const Vector<Dim, int>& grid_cells, LaneBoundary<Dim, Device>& b, bool anew, int reach) {
+  const Kokkos::RangePolicy<Exec> over_words(exec, 0, tiling.cell_row_count() * tiling.words);
+  Kokkos::parallel_for("vsb::find_exterior_cells", over_words,
+                       kernel::FindExterior<Dim, Device>{b.bits, tiling});
+  Kokkos::parallel_for("vsb::find_boundary_cells", over_words,
+                       kernel::FindBoundary<Dim, Device>{b.bits, tiling});
+  Kokkos::parallel_for("vsb::mark_lane_nodes", Kokkos::RangePolicy<Exec>(exec, 0, tiling.node_row_count()),
+                       kernel::MarkLaneNodes<Dim, Real, Device>{lanes, b, tiling, grid_cells, anew, reach});
+}
+
+/// From the tractions of nodes to the loads of groups.
+template <class Exec, int Dim, class Real, class Device>
+void load_groups(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes, LaneBoundary<Dim, Device>& b) {
+  Kokkos::deep_copy(exec, b.stale, 0);
+  Kokkos::parallel_for("vsb::load_groups", Kokkos::RangePolicy<Exec>(exec, 0, lanes.group_count),
+                       kernel::LoadGroup<Dim, Real, Device>{lanes, b});
+}
+
 /// From bits.occupied to the loads of nodes and groups. anew: after packing anew, or where a declaration
 /// changed.
 template <class Exec, int Dim, class Real, class Device>
@@ -197,16 +235,8 @@ void mark_lanes(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes,
     tiling.first[i] = math::max(0, -lanes.box.first[i]);
     tiling.last[i] = math::min(lanes.box.cells[i], grid_cells[i] - lanes.box.first[i]) - 1;
   }
-  const Kokkos::RangePolicy<Exec> over_words(exec, 0, tiling.cell_row_count() * tiling.words);
-  Kokkos::parallel_for("vsb::find_exterior_cells", over_words,
-                       kernel::FindExterior<Dim, Device>{b.bits, tiling});
-  Kokkos::parallel_for("vsb::find_boundary_cells", over_words,
-                       kernel::FindBoundary<Dim, Device>{b.bits, tiling});
-  Kokkos::parallel_for("vsb::mark_lane_nodes", Kokkos::RangePolicy<Exec>(exec, 0, tiling.node_row_count()),
-                       kernel::MarkLaneNodes<Dim, Real, Device>{lanes, b, tiling, grid_cells, anew});
-  Kokkos::deep_copy(exec, b.stale, 0);
-  Kokkos::parallel_for("vsb::load_groups", Kokkos::RangePolicy<Exec>(exec, 0, lanes.group_count),
-                       kernel::LoadGroup<Dim, Real, Device>{lanes, b});
+  mark_nodes(exec, lanes, tiling, grid_cells, b, anew, 0);
+  load_groups(exec, lanes, b);
 }
 
 /// Nodes at which a traction acts. Waits for the device.

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <vsb/kernels/build_lanes.hpp>
+#include <vsb/kernels/give_to_stencil.hpp>
 #include <vsb/kernels/particles_to_grid.hpp>
 #include <vsb/physics/cell_mass_matrix.hpp>
 #include <vsb/physics/multilinear.hpp>
@@ -208,6 +209,13 @@ struct TakeInLeavers {
       v[i] = *lanes.at(lanes.velocity_column + i, e);
     }
     for (int c = 0; c < sigma.size; ++c) sigma[c] = *lanes.at(lanes.stress_column + c, e);
+    if (lanes.dual) {
+      add_particle(stencil_shape(lanes.stencils(g), lane, xi, grid.inverse_spacing),
+                   grid.map(lanes.cell(group, lane), xi).x, v, sigma, *lanes.at(lanes.mass_column, e),
+                   *lanes.at(lanes.volume_column, e), virtual_stress, tractions, Vector<Dim, Real>::zero(),
+                   StencilSink<Dim, Real, Device>{nodes});
+      return;
+    }
     Shape<Dim, (1 << Dim), Real> shape;
     multilinear(xi, grid.inverse_spacing, shape.N, shape.dN);
     for (int a = 0; a < shape.support; ++a) shape.node[a] = group.node[a >> 1] + lane + (a & 1);

@@ -14,18 +14,23 @@ namespace vsb {
 
 namespace kernel {
 
-template <int Dim, class Real, class Device>
+/// Planes: node planes to which a layer of cells adds, 3 with dual cells.
+template <int Dim, class Real, class Device, int Planes = 2>
 struct LaneNodeRows {
   using Nodes = LaneNodes<Dim, Real, Device>;
   using P = typename Lanes<Real>::Pack;
   Nodes nodes;
 
-  /// Lower and upper sums together.
+  /// Lower, middle and upper sums together.
   KOKKOS_FORCEINLINE_FUNCTION P sum(int column, int node) const {
     const P lower = nodes.load(nodes.lower_sums + column, node);
-    return Dim == 1 ? lower : lower + nodes.load(nodes.upper_sums + column, node);
+    if constexpr (Dim == 1) return lower;
+    const P both = lower + nodes.load(nodes.upper_sums + column, node);
+    return Planes == 2 ? both : both + nodes.load(nodes.middle_sums + column, node);
   }
+  /// Sweeps over dual cells do so themselves.
   KOKKOS_FORCEINLINE_FUNCTION void clear(int column, int node) const {
+    if (Planes == 3) return;
     P(Real(0)).store(nodes.at(nodes.lower_sums + column, node));
     if (Dim > 1) P(Real(0)).store(nodes.at(nodes.upper_sums + column, node));
   }
@@ -42,9 +47,9 @@ struct LaneNodeRows {
   }
 };
 
-template <int Dim, class Real, class Device>
-struct UpdateLaneNodes : LaneNodeRows<Dim, Real, Device> {
-  using Base = LaneNodeRows<Dim, Real, Device>;
+template <int Dim, class Real, class Device, int Planes = 2>
+struct UpdateLaneNodes : LaneNodeRows<Dim, Real, Device, Planes> {
+  using Base = LaneNodeRows<Dim, Real, Device, Planes>;
   using Base::nodes;
   using typename Base::P;
   Vector<Dim, Real> gravity;          ///< m/s^2
@@ -77,9 +82,9 @@ struct UpdateLaneNodes : LaneNodeRows<Dim, Real, Device> {
   }
 };
 
-template <int Dim, class Real, class Device>
-struct RemapLaneNodes : LaneNodeRows<Dim, Real, Device> {
-  using Base = LaneNodeRows<Dim, Real, Device>;
+template <int Dim, class Real, class Device, int Planes = 2>
+struct RemapLaneNodes : LaneNodeRows<Dim, Real, Device, Planes> {
+  using Base = LaneNodeRows<Dim, Real, Device, Planes>;
   using Base::nodes;
   using typename Base::P;
   Real factor;  ///< dt / h_0

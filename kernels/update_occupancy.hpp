@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// What follows from where the particles are: their bins, and, when a particle has changed its bin, the order
-/// of the particles within the bins and the boundary nodes. With a fill criterion the boundary nodes follow
+/// of the particles within the bins and the boundary nodes. Where bins are no cells (bases with reach) the
+/// boundary nodes are found at every call: a particle may change its cell and stay in its bin. With a fill criterion the boundary nodes follow
 /// the volumes too: the cells' fill is summed at every call, so that the nodes depend on the particles of the
 /// moment alone, and a resumed run finds the ones it had.
 #pragma once
@@ -79,8 +80,9 @@ int update_occupancy(const Exec& exec, const Particles<Dim, Real, Device>& parti
   if (where.changed) sort_by_bin(exec, o.bins);
   const bool refilled = o.minimum_fill > 0 && mark_underfilled_cells(exec, particles, o.bins, basis,
                                                                      o.minimum_fill, o.cells.underfilled);
-  if (where.changed && o.cells.outside.size() > 0) update_outside(exec, particles, o.cells, basis);
-  if (where.changed || refilled)
+  const bool moved = where.changed || Basis::reach > 0;
+  if (moved && o.cells.outside.size() > 0) update_outside(exec, particles, o.cells, basis);
+  if (moved || refilled)
     o.boundary_node_count =
         mark_boundary_nodes(exec, particles, o.cells, basis, o.tractions, o.boundary, o.conservative);
   return -1;

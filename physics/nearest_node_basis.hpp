@@ -32,6 +32,21 @@ struct NodeTriple {
   T N[3], dN[3];
 };
 
+/// The products of one function of every direction. Digit i of a, to the base 3, is the node's place in
+/// direction i.
+template <int Dim, int Support, class T>
+KOKKOS_FORCEINLINE_FUNCTION void multiply_triples(const NodeTriple<T> (&f)[Dim],
+                                                  Shape<Dim, Support, T>& s) {
+  for (int a = 0; a < Support; ++a) {
+    s.N[a] = 1;
+    for (int j = 0; j < Dim; ++j) s.dN[a][j] = 1;
+    for (int i = 0, digits = a; i < Dim; ++i, digits /= 3) {
+      s.N[a] *= f[i].N[digits % 3];
+      for (int j = 0; j < Dim; ++j) s.dN[a][j] *= i == j ? f[i].dN[digits % 3] : f[i].N[digits % 3];
+    }
+  }
+}
+
 template <int Dim, class Real>
 struct NearestNodeBasis {
   static constexpr int dimension = Dim;
@@ -78,7 +93,7 @@ struct NearestNodeBasis {
   }
 
   /// The products of functions(i, xi), the NodeTriple of direction i at the distance xi, -1/2 <= xi <= 1/2,
-  /// in cells from the nearest node. Digit i of a, to the base 3, is the node's place in direction i.
+  /// in cells from the nearest node.
   template <class Functions>
   KOKKOS_FORCEINLINE_FUNCTION Shape<Dim, support, Real> product_shape(const Position& x,
                                                                       const Functions& functions) const {
@@ -91,15 +106,8 @@ struct NearestNodeBasis {
     }
     const int centre = grid.node_index(nearest);
     Shape<Dim, support, Real> s;
-    for (int a = 0; a < support; ++a) {
-      s.node[a] = centre + offset(a);
-      s.N[a] = 1;
-      for (int j = 0; j < Dim; ++j) s.dN[a][j] = 1;
-      for (int i = 0, digits = a; i < Dim; ++i, digits /= 3) {
-        s.N[a] *= f[i].N[digits % 3];
-        for (int j = 0; j < Dim; ++j) s.dN[a][j] *= i == j ? f[i].dN[digits % 3] : f[i].N[digits % 3];
-      }
-    }
+    for (int a = 0; a < support; ++a) s.node[a] = centre + offset(a);
+    multiply_triples(f, s);
     return s;
   }
 

@@ -9,10 +9,11 @@ namespace vsb {
 
 /// The cell in which a place is that lies at xi of `cell`, and its xi there; whether that is another cell
 /// than before. Round-off at a face of the grid counts as inside, as everywhere (UniformGrid::contains). What
-/// is not finite, or nowhere near, gets a cell outside the grid.
+/// is not finite, or nowhere near, gets a cell outside the grid. Places may not come nearer than `margin`
+/// cells to the faces of the grid; those that do get a cell outside it too.
 template <int Dim, class Real>
 KOKKOS_INLINE_FUNCTION bool to_next_cell(const UniformGrid<Dim, Real>& grid, Vector<Dim, int>& cell,
-                                         Vector<Dim, Real>& xi) {
+                                         Vector<Dim, Real>& xi, Real margin = 0) {
   bool out = false;
   for (int i = 0; i < Dim; ++i) {
     const Real round_off = 16 * static_cast<Real>(grid.cells[i]) * math::epsilon<Real>;
@@ -31,6 +32,17 @@ KOKKOS_INLINE_FUNCTION bool to_next_cell(const UniformGrid<Dim, Real>& grid, Vec
       xi[i] = Real(0);
       ++cell[i];
     }
+  }
+  if (margin == Real(0)) return out;
+  for (int i = 0; i < Dim; ++i) {
+    const int last = grid.cells[i] - 1;
+    const Real round_off = 16 * static_cast<Real>(grid.cells[i]) * math::epsilon<Real>;
+    const bool below = cell[i] == 0 && xi[i] < margin - round_off,
+               above = cell[i] == last && xi[i] > 1 - margin + round_off;
+    if (!below && !above) continue;
+    out = true;
+    cell[i] += above ? 1 : -1;  // the place stays what it is
+    xi[i] += above ? Real(-1) : Real(1);
   }
   return out;
 }

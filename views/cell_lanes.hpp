@@ -11,6 +11,9 @@
 /// and not the grid. A layer is all groups of one k (one j in 2D, everything in 1D); it alone writes to the
 /// lower sums of the node plane below it and to the upper sums of the plane above it, and a node's sums are
 /// the two together. One thread works on a layer, so the sums are the same for any number of threads.
+///
+/// Quadratic B-splines have the cells around the nodes for cells (CellLanes::dual): there a particle's nodes
+/// are always the same 3^Dim, and a layer writes to three node planes.
 #pragma once
 
 #include <vsb/views/masks.hpp>
@@ -44,6 +47,15 @@ struct LaneGroup {
   std::uint64_t loaded[corner_rows];  ///< bit l: the lower node of lane l is loaded, up to l = width
 };
 
+/// The nodes of a group with quadratic B-splines, and which of them are loaded; in place of those in
+/// LaneGroup.
+template <int Dim>
+struct LaneStencil {
+  static constexpr int rows = Dim == 1 ? 1 : Dim == 2 ? 3 : 9;  ///< of nodes along x: 3 (k - 1) + j - 1
+  int node[rows];                                               ///< the lowest node of lane 0 in every row
+  std::uint64_t loaded[rows];  ///< bit l: the lowest node of lane l is loaded, up to l = width + 1
+};
+
 /// A box of cells of a grid.
 template <int Dim>
 struct CellBox {
@@ -69,6 +81,7 @@ struct CellLanes {
   Ints id;                               ///< [slot * width + lane]: number of the particle; ghosts: -1
   Kokkos::View<LaneMask*, Device> held;  ///< [slot]: bit l: lane l holds a particle
   Kokkos::View<LaneGroup<Dim>*, Device> groups;  ///< by layer, row and x
+  Kokkos::View<LaneStencil<Dim>*, Device> stencils;  ///< [group]: where cells are dual
   Ints layer_first;                              ///< [layers + 1]: the groups of a layer
   Ints plane_first;                              ///< [layers + 2]: the nodes of a plane
   Ints group_at;  ///< [row of cells][groups per row]: number, -1 where there is none
@@ -77,6 +90,7 @@ struct CellLanes {
       mass_matrices;  ///< [(group * 3^Dim + number) * width + lane], kg, numbers as in
                       ///< physics/cell_mass_matrix.hpp; empty: steps take two sweeps
   CellBox<Dim> box;
+  bool dual = false;   ///< whether cells are those around the nodes of a scene's grid
   int state_size = 0;  ///< numbers of material state per particle
   int group_count = 0, slot_count = 0, node_count = 0;
   int particle_count = 0;
@@ -100,6 +114,26 @@ struct CellLanes {
     if constexpr (Dim == 1) return 0;
     if constexpr (Dim == 2) return k + c;
     return (k + (c >> 1)) * node_rows_per_plane() + j + (c & 1);
+  }
+  /// The row of nodes at stencil row r of a row of dual cells.
+  KOKKOS_FUNCTION int stencil_row(int row, int r) const {
+    const int j = row % rows_per_layer(), k = row / rows_per_layer();
+    return Dim == 3 ? (k + r / 3) * node_rows_per_plane() + j + r % 3 : k + r;
+  }
+  /// Either, as cells are.
+  KOKKOS_FUNCTION int node_rows_of_cell() const {
+    return dual ? LaneStencil<Dim>::rows : LaneGroup<Dim>::corner_rows;
+  }
+  KOKKOS_FUNCTION int node_row_of_cell(int row, int r) const {
+    return dual ? stencil_row(row, r) : node_row(row, r);
+  }
+  /// The scene's node (i, j, k) that is the lowest of the box. Outermost cells are void, so dual cells need
+  /// as many nodes as others.
+  KOKKOS_FUNCTION Vector<Dim, int> lowest_node() const {
+    auto node = box.first;
+    if (dual)
+      for (int i = 0; i < Dim; ++i) --node[i];
+    return node;
   }
   /// Node x of a row of nodes of the box; -1 where it is not kept, since no cell around it is in a group.
   KOKKOS_FUNCTION int node_at(int node_row, int x) const {
@@ -188,6 +222,8 @@ struct LaneNodes {
                        displacement_column = increment_column + Dim,
                        remapped_column = displacement_column + Dim,
                        inverse_mass_column = remapped_column + Dim, column_count = inverse_mass_column + 1;
+  /// Dual cells: sums of the plane in the middle of a layer.
+  static constexpr int middle_sums = column_count, dual_column_count = column_count + sum_columns;
   using P = typename Lanes<Real>::Pack;
   Kokkos::View<Real**, Kokkos::LayoutLeft, Device> data;  ///< [node][column]: lower and upper sums of mass in
                                                           ///< kg, momentum in kg m/s and force in N; dt a in
@@ -197,6 +233,10 @@ struct LaneNodes {
   /// The column of sum number `sum` to which a cell adds at its corner a, by the layer of the cell.
   KOKKOS_FUNCTION static constexpr int sum_column(int sum, int a) {
     return (Dim > 1 && (a >> (Dim - 1) & 1) ? upper_sums : lower_sums) + sum;
+  }
+  /// The sums to which a layer of dual cells adds at its node plane 0, 1 or 2.
+  KOKKOS_FUNCTION static constexpr int sums_of_plane(int plane) {
+    return plane == 0 ? lower_sums : plane == 1 ? middle_sums : upper_sums;
   }
   KOKKOS_FORCEINLINE_FUNCTION Real* at(int column, int node) const {
     return data.data() + static_cast<size_t>(column) * data.stride(1) + node;

@@ -9,6 +9,7 @@
 #include <vsb/kernels/balance.hpp>
 #include <vsb/kernels/health.hpp>
 #include <vsb/kernels/lane_loads.hpp>
+#include <vsb/kernels/spline_lane_step.hpp>
 #include "run/byte_stream.hpp"
 #include "run/execution_space.hpp"
 #include "run/loads.hpp"
@@ -20,15 +21,16 @@ namespace vsb::app {
 /// asks for the cell lanes and cannot have them.
 std::string reason_for_particle_kernels(const Scene& scene);
 
-template <int Dim, class Real>
+/// State: LaneState for linear functions, SplineLaneState for quadratic B-splines.
+template <int Dim, class Real, class State = LaneState<Dim, Real, ExecutionSpace::device_type>>
 class LaneEngine {
  public:
   using Device = ExecutionSpace::device_type;
 
   struct Setup {
-    UniformGrid<Dim, Real> grid;
+    UniformGrid<Dim, Real> grid;  ///< of the scene
     Walls<Dim> walls;
-    BoundaryNodes<Device> tractions;  ///< [node of the grid]: declared
+    BoundaryNodes<Device> tractions;  ///< [node of the basis' grid]: declared
     TractionMask conservative, original;
     int gauss_points;
     Material<Real> material;
@@ -58,6 +60,8 @@ class LaneEngine {
 
   /// Of the particles between steps.
   Invalid find_invalid() const;
+  /// Whether lanes hold cells of the scene's grid, as `balance`, `for_each_cell` and `fields` need it.
+  static constexpr bool on_cells = !State::splines;
   /// Whether all loads are virtual stresses as the sweeps take them, which is what `balance` knows.
   bool loaded_by_sweeps() const { return state_.surface.count() == 0 && state_.original == 0; }
   Balance<Dim> balance(const Loads<Dim, Real>& loads) const;
@@ -77,7 +81,7 @@ class LaneEngine {
 
   Setup setup_;
   ExecutionSpace exec_;
-  LaneState<Dim, Real, Device> state_;
+  State state_;
   bool prepared_ = false;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The members of LaneEngine, compiled for each dimension and precision on its own.
+/// The members of LaneEngine, compiled for each dimension, precision and state on its own.
 #pragma once
 
 #include <utility>
@@ -36,6 +36,19 @@ inline SlotRuns runs_of_slots(const std::vector<GroupShape>& groups) {
   return used;
 }
 
+/// The columns of the nodes' sums.
+template <int Dim, class Real, class Device>
+std::vector<int> columns_of_sums(const LaneMemory<Dim, Real, Device>& m) {
+  std::vector<int> columns;
+  for (int plane = 0; plane < (m.lanes.dual ? 3 : 2); ++plane)
+    for (int c = 0; c < m.nodes.sum_columns; ++c)
+      columns.push_back((plane == 0   ? m.nodes.lower_sums
+                         : plane == 1 ? m.nodes.upper_sums
+                                      : m.nodes.middle_sums) +
+                        c);
+  return columns;
+}
+
 /// An array as long as the view.
 template <class View>
 bool read_view(ByteReader& r, const View& view) {
@@ -47,10 +60,10 @@ bool read_view(ByteReader& r, const View& view) {
 
 }  // namespace detail
 
-template <int Dim, class Real>
-LaneEngine<Dim, Real>::LaneEngine(const Setup& setup, const SurfacePoints<Dim, Real, Device>& surface)
+template <int Dim, class Real, class State>
+LaneEngine<Dim, Real, State>::LaneEngine(const Setup& setup, const SurfacePoints<Dim, Real, Device>& surface)
     : setup_(setup) {
-  state_.memory.grid = setup.grid;
+  set_grid(state_, setup.grid);
   state_.memory.walls = setup.walls;
   state_.memory.lanes.state_size = setup.state_size;
   state_.memory.lanes.particle_count = setup.particles;
@@ -58,33 +71,36 @@ LaneEngine<Dim, Real>::LaneEngine(const Setup& setup, const SurfacePoints<Dim, R
   state_.boundary.conservative = setup.conservative;
   state_.original = setup.original;
   state_.gauss_points = setup.gauss_points;
-  state_.surface = pack_surface_points(exec_, surface, setup.grid);
+  if constexpr (!State::splines) state_.surface = pack_surface_points(exec_, surface, setup.grid);
 }
 
-template <int Dim, class Real>
-void LaneEngine<Dim, Real>::pack(ParticleBlock<Dim, Real, Device> block) {
+template <int Dim, class Real, class State>
+void LaneEngine<Dim, Real, State>::pack(ParticleBlock<Dim, Real, Device> block) {
   pack_lanes(exec_, std::move(block), state_);
 }
 
-template <int Dim, class Real>
-int LaneEngine<Dim, Real>::prepare(const Loads<Dim, Real>& loads) {
-  loads.with_lane_field([&](const auto& field) { prepare_lane_step(exec_, state_, field); });
+template <int Dim, class Real, class State>
+int LaneEngine<Dim, Real, State>::prepare(const Loads<Dim, Real>& loads) {
+  loads.template with_lane_field<!State::splines>(
+      [&](const auto& field) { prepare_lane_step(exec_, state_, field); });
   prepared_ = true;
   return add_loads(loads);
 }
 
-template <int Dim, class Real>
-int LaneEngine<Dim, Real>::add_loads(const Loads<Dim, Real>& loads) {
-  if (state_.surface.count() == 0 && state_.original == 0) return -1;
-  const int lost =
-      loads.with_field_beside_lanes([&](const auto& field) { return add_lane_loads(exec_, state_, field); });
+template <int Dim, class Real, class State>
+int LaneEngine<Dim, Real, State>::add_loads(const Loads<Dim, Real>& loads) {
+  if (loaded_by_sweeps()) return -1;
+  int lost = -1;
+  if constexpr (!State::splines)
+    lost = loads.with_field_beside_lanes(
+        [&](const auto& field) { return add_lane_loads(exec_, state_, field); });
   return lost < 0 ? -1 : state_.memory.lanes.particle_count + lost;
 }
 
-template <int Dim, class Real>
-int LaneEngine<Dim, Real>::step(const Loads<Dim, Real>& next) {
+template <int Dim, class Real, class State>
+int LaneEngine<Dim, Real, State>::step(const Loads<Dim, Real>& next) {
   int lost = -1;
-  next.with_lane_field([&](const auto& field) {
+  next.template with_lane_field<!State::splines>([&](const auto& field) {
     std::visit(
         [&](const auto& material, const auto& volume) {
           lost = lane_step(exec_, state_, material, volume, field, setup_.options);
@@ -94,46 +110,49 @@ int LaneEngine<Dim, Real>::step(const Loads<Dim, Real>& next) {
   return lost < 0 ? add_loads(next) : lost;
 }
 
-template <int Dim, class Real>
-void LaneEngine<Dim, Real>::unpack(const Particles<Dim, Real, Device>& particles,
-                                   const SurfacePoints<Dim, Real, Device>& surface) const {
+template <int Dim, class Real, class State>
+void LaneEngine<Dim, Real, State>::unpack(const Particles<Dim, Real, Device>& particles,
+                                          const SurfacePoints<Dim, Real, Device>& surface) const {
   unpack_particles(exec_, state_.memory, particles);
   unpack_homeless(exec_, state_.memory, particles);
   unpack_surface_points(exec_, state_.surface, state_.memory.grid, surface);
   exec_.fence();
 }
 
-template <int Dim, class Real>
-Particles<Dim, Real, typename LaneEngine<Dim, Real>::Device> LaneEngine<Dim, Real>::mass_points() const {
+template <int Dim, class Real, class State>
+Particles<Dim, Real, typename LaneEngine<Dim, Real, State>::Device>
+LaneEngine<Dim, Real, State>::mass_points() const {
   return unpack_mass_points(exec_, state_.memory);
 }
 
-template <int Dim, class Real>
-Invalid LaneEngine<Dim, Real>::find_invalid() const {
+template <int Dim, class Real, class State>
+Invalid LaneEngine<Dim, Real, State>::find_invalid() const {
   return vsb::find_invalid(exec_, state_.memory);
 }
 
-template <int Dim, class Real>
-Balance<Dim> LaneEngine<Dim, Real>::balance(const Loads<Dim, Real>& loads) const {
+template <int Dim, class Real, class State>
+Balance<Dim> LaneEngine<Dim, Real, State>::balance(const Loads<Dim, Real>& loads) const {
   const double modulus =
       std::visit([](const auto& m) { return double(m.constrained_modulus()); }, setup_.material);
   Balance<Dim> result{};
-  loads.with_lane_field([&](const auto& field) {
-    result = vsb::balance(exec_, state_, modulus, field, setup_.options.gravity);
-  });
+  if constexpr (!State::splines)
+    loads.with_lane_field([&](const auto& field) {
+      result = vsb::balance(exec_, state_, modulus, field, setup_.options.gravity);
+    });
   return result;
 }
 
-template <int Dim, class Real>
-void LaneEngine<Dim, Real>::equivalent_plastic_strain(const Kokkos::View<Real*, Device>& strain) const {
+template <int Dim, class Real, class State>
+void LaneEngine<Dim, Real, State>::equivalent_plastic_strain(
+    const Kokkos::View<Real*, Device>& strain) const {
   const auto& lanes = state_.memory.lanes;
   Kokkos::parallel_for("vsb::lane_plastic_strain",
                        Kokkos::RangePolicy<ExecutionSpace>(exec_, 0, lanes.group_count),
                        kernel::LanePlasticStrain<Dim, Real, Device>{lanes, strain});
 }
 
-template <int Dim, class Real>
-void LaneEngine<Dim, Real>::for_each_cell(
+template <int Dim, class Real, class State>
+void LaneEngine<Dim, Real, State>::for_each_cell(
     const std::function<void(int, const Vector<Dim, int>&)>& visit) const {
   const auto& lanes = state_.memory.lanes;
   const auto groups = detail::on_host(lanes.groups);
@@ -145,33 +164,34 @@ void LaneEngine<Dim, Real>::for_each_cell(
   }
 }
 
-template <int Dim, class Real>
-std::unique_ptr<FieldSource> LaneEngine<Dim, Real>::fields() const {
+template <int Dim, class Real, class State>
+std::unique_ptr<FieldSource> LaneEngine<Dim, Real, State>::fields() const {
+  if constexpr (State::splines) return nullptr;
   return std::make_unique<LaneFields<Dim, Real>>(exec_, state_);
 }
 
-template <int Dim, class Real>
-int LaneEngine<Dim, Real>::boundary_nodes() const {
-  return count_loaded_nodes(exec_, state_.memory.lanes, state_.boundary);
+template <int Dim, class Real, class State>
+int LaneEngine<Dim, Real, State>::boundary_nodes() const {
+  return count_loaded_nodes(exec_, state_);
 }
 
-template <int Dim, class Real>
-size_t LaneEngine<Dim, Real>::bytes() const {
+template <int Dim, class Real, class State>
+size_t LaneEngine<Dim, Real, State>::bytes() const {
   const auto bytes = [](const auto&... views) { return (... + (views.span() * sizeof(*views.data()))); };
   const auto& l = state_.memory.lanes;
   const auto& n = state_.memory.nodes;
   const auto& b = state_.boundary;
   const auto& p = state_.surface;
   const size_t columns = static_cast<size_t>(l.slot_count) * l.width * static_cast<size_t>(l.columns());
-  return columns * sizeof(Real) + bytes(l.id, l.held, l.mass_matrices, l.groups, l.layer_first, l.plane_first,
-                                        l.group_at, l.chunk_at, n.data, n.fixed, b.bits.occupied,
-                                        b.bits.exterior, b.bits.boundary, b.marked, b.active, b.tractions,
-                                        p.cell, p.xi, p.area, p.tractions, p.carrier, p.order, p.run_cell,
-                                        p.run_first, p.cell_count);
+  return columns * sizeof(Real) + bytes(l.id, l.held, l.mass_matrices, l.groups, l.stencils, l.layer_first,
+                                        l.plane_first, l.group_at, l.chunk_at, n.data, n.fixed,
+                                        b.bits.occupied, b.bits.exterior, b.bits.boundary, b.marked, b.active,
+                                        b.tractions, p.cell, p.xi, p.area, p.tractions, p.carrier, p.order,
+                                        p.run_cell, p.run_first, p.cell_count);
 }
 
-template <int Dim, class Real>
-void LaneEngine<Dim, Real>::save(ByteSink& to) const {
+template <int Dim, class Real, class State>
+void LaneEngine<Dim, Real, State>::save(ByteSink& to) const {
   const auto& m = state_.memory;
   const auto& l = m.lanes;
   const size_t entries = static_cast<size_t>(l.slot_count) * l.width,
@@ -204,7 +224,7 @@ void LaneEngine<Dim, Real>::save(ByteSink& to) const {
     for (const auto& [first, slots] : used.runs) w.values(&column(first * l.width), slots * l.width);
   }
   const auto sums = detail::on_host(m.nodes.data);
-  for (int c = 0; c < 2 * m.nodes.sum_columns; ++c) w.array(&sums(0, static_cast<size_t>(c)), nodes);
+  for (const int c : detail::columns_of_sums(m)) w.array(&sums(0, static_cast<size_t>(c)), nodes);
   w.array(detail::on_host(l.mass_matrices).data(), l.mass_matrices.size());
   const auto& p = state_.surface;
   if (p.count() > 0) {
@@ -214,8 +234,8 @@ void LaneEngine<Dim, Real>::save(ByteSink& to) const {
   }
 }
 
-template <int Dim, class Real>
-bool LaneEngine<Dim, Real>::restore(ByteSource& saved) {
+template <int Dim, class Real, class State>
+bool LaneEngine<Dim, Real, State>::restore(ByteSource& saved) {
   ByteReader r(saved);
   auto& m = state_.memory;
   int width = 0, groups = 0, slots = 0, nodes = 0, slack = 0, since = 0, flow = 0;
@@ -266,7 +286,7 @@ bool LaneEngine<Dim, Real>::restore(ByteSource& saved) {
     Kokkos::deep_copy(on_device, column);
   }
   const auto sums = Kokkos::create_mirror_view(m.nodes.data);
-  for (int c = 0; c < 2 * m.nodes.sum_columns; ++c)
+  for (const int c : detail::columns_of_sums(m))
     if (!r.array(&sums(0, static_cast<size_t>(c)), static_cast<size_t>(nodes))) return false;
   Kokkos::deep_copy(m.nodes.data, sums);
   if (!detail::read_view(r, l.mass_matrices)) return false;

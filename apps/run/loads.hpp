@@ -119,8 +119,8 @@ class Loads {
   int gauss_points() const { return gauss_points_; }
 
   /// Calls work(field) with the field as the sweeps over cell lanes take it: of the (modified) virtual stress
-  /// method alone, and as an affine one where it is.
-  template <class Work>
+  /// method alone, and as an affine one where it is, if asked for.
+  template <bool AsAffine = true, class Work>
   void with_lane_field(const Work& work) const {
     if (modified() == 0) return work(NoVirtualStress{});
     if (all_uniform_) {
@@ -130,15 +130,19 @@ class Loads {
     }
     auto fields = fields_;
     for_each_other([&](int k) { fields.field[k] = StressField<Dim, Real>(); });
-    if (!all_affine_) return work(fields);
-    AffineVirtualStress<Dim, Real> affine;
-    affine.count = fields.count;
-    for (int k = 0; k < affine.count; ++k) {
-      affine.field[k] = fields.field[k].as_affine();
-      affine.factor[k] = fields.factor[k];
+    if constexpr (AsAffine) {
+      if (all_affine_) {
+        AffineVirtualStress<Dim, Real> affine;
+        affine.count = fields.count;
+        for (int k = 0; k < affine.count; ++k) {
+          affine.field[k] = fields.field[k].as_affine();
+          affine.factor[k] = fields.factor[k];
+        }
+        affine.find_axis();
+        return work(affine);
+      }
     }
-    affine.find_axis();
-    work(affine);
+    work(fields);
   }
 
   /// Calls work(field) with the field of all tractions, for what loads cell lanes beside the sweeps.

@@ -20,6 +20,7 @@
 #include "run/grid_lines.hpp"
 #include "run/keep_particles.hpp"
 #include "run/lane_engine.hpp"
+#include "run/no_lanes.hpp"
 #include "run/read_nodes.hpp"
 #include "run/saved_block.hpp"
 #include "run/set_up_nodes.hpp"
@@ -147,7 +148,8 @@ class SimulationOf final : public Simulation {
   BalanceReport balance() override { return balance_under_loads_at(load_time()); }
   BalanceReport balance_under_loads_at(double t) override {
     set_loads(t);
-    const auto b = lanes_ && lanes_->loaded_by_sweeps() ? lanes_->balance(loads_) : balance_of_memory();
+    const auto b = lanes_ && Engine::on_cells && lanes_->loaded_by_sweeps() ? lanes_->balance(loads_)
+                                                                            : balance_of_memory();
     BalanceReport report;
     report.force_ratio = b.force_ratio();
     report.energy_ratio = b.strain_energy > 0 ? b.kinetic_energy / b.strain_energy : 1.0;
@@ -165,11 +167,10 @@ class SimulationOf final : public Simulation {
 
   std::unique_ptr<ParticleReader> read_particles() override {
     std::unique_ptr<FieldSource> fields;
-    if (lanes_)
+    if (lanes_ && Engine::on_cells)
       fields = lanes_->fields();
     else
-      fields = std::make_unique<BlockFields<Dim, Real>>(exec_, memory_->state.particles, bodies_,
-                                                        [this] { return boundary_flags(); });
+      fields = std::make_unique<LentFields>(*this);
     std::vector<PlacedBody> bodies;
     for (const auto& body : bodies_) bodies.push_back({body.first, body.last});
     auto reader = std::make_unique<SceneReader>(scene_, ids_, std::move(bodies), std::move(fields));
@@ -215,9 +216,10 @@ class SimulationOf final : public Simulation {
       surplus[c] += marked[static_cast<size_t>(p)] != 0 ? 1 : -1;
       contents[c] = CellContent::particles;
     };
-    if (lanes_) {
+    if (lanes_ && Engine::on_cells) {
       lanes_->for_each_cell(count);
     } else {
+      const Loan loan(*this);
       const auto host = host_copy(memory_->block);
       for (int p = 0; p < particle_count(); ++p)
         count(p, on_host_.basis.grid.cell_containing(host.particles.position_of(p)));
@@ -288,7 +290,14 @@ class SimulationOf final : public Simulation {
   using Device = ExecutionSpace::device_type;
   static_assert(max_tractions == UniformVirtualStress<Dim, Real>::capacity,
                 "a scene may declare as many tractions as the kernels can take");
-  static constexpr bool has_lanes = runs_on_host && std::is_same_v<Basis, LinearBasis<Dim, Real>>;
+  static constexpr bool has_splines = std::is_same_v<Basis, QuadraticBSplineBasis<Dim, Real>>,
+                        has_lanes =
+                            runs_on_host && (has_splines || std::is_same_v<Basis, LinearBasis<Dim, Real>>);
+  using Engine =
+      std::conditional_t<!has_lanes, NoLanes<Dim, Real>,
+                         LaneEngine<Dim, Real,
+                                    std::conditional_t<has_splines, SplineLaneState<Dim, Real, Device>,
+                                                       LaneState<Dim, Real, Device>>>>;
 
   /// The particles as the particle kernels take them, and what these work on.
   struct Memory {
@@ -305,6 +314,19 @@ class SimulationOf final : public Simulation {
     Loan& operator=(const Loan&) = delete;
     SimulationOf& simulation;
     bool brought_back;
+  };
+
+  /// The fields of particles that are lent for as long.
+  struct LentFields final : FieldSource {
+    explicit LentFields(SimulationOf& of)
+        : loan(of),
+          fields(of.exec_, of.memory_->state.particles, of.bodies_, [&of] { return of.boundary_flags(); }) {}
+    void read(unsigned field, size_t first, std::vector<double>& to) override {
+      fields.read(field, first, to);
+    }
+    void read_flags(size_t first, std::vector<unsigned char>& to) override { fields.read_flags(first, to); }
+    Loan loan;
+    BlockFields<Dim, Real> fields;
   };
 
   /// Of the particles there are, all at zero.
@@ -327,9 +349,9 @@ class SimulationOf final : public Simulation {
     lanes_->unpack(memory_->block.particles, surface_);
   }
 
-  std::unique_ptr<LaneEngine<Dim, Real>> make_lanes() const {
-    typename LaneEngine<Dim, Real>::Setup setup;
-    setup.grid = basis_.grid;
+  std::unique_ptr<Engine> make_lanes() const {
+    typename Engine::Setup setup;
+    setup.grid = uniform_grid<Dim, Real>(scene_.grid);
     setup.walls = walls<Dim>(scene_.faces);
     setup.tractions = declared_;
     setup.conservative = loads_.conservative();
@@ -339,7 +361,7 @@ class SimulationOf final : public Simulation {
     setup.state_size = state_size<Dim>(setup.material);
     setup.particles = particle_count();
     setup.options = options_;
-    return std::make_unique<LaneEngine<Dim, Real>>(setup, surface_);
+    return std::make_unique<Engine>(setup, surface_);
   }
   /// Hands the particles over to cell lanes.
   void pack() {
@@ -510,7 +532,7 @@ class SimulationOf final : public Simulation {
   long long step_ = 0, loads_begin_ = 0;
   std::string particle_kernels_because_;
   std::unique_ptr<Memory> memory_;
-  std::unique_ptr<LaneEngine<Dim, Real>> lanes_;  ///< where there are some, they hold the particles
+  std::unique_ptr<Engine> lanes_;  ///< where there are some, they hold the particles
 };
 
 }  // namespace vsb::app

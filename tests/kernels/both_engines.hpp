@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <map>
 #include <vsb/kernels/lane_loads.hpp>
+#include <vsb/kernels/spline_lane_step.hpp>
 
 #include "support.hpp"
 
@@ -39,6 +40,32 @@ std::map<int, int> places_of_nodes(const CellLanes<Dim, Real, Device>& lanes,
   return places;
 }
 
+/// The same of dual cell lanes; `grid` is the one with its ghost layer.
+template <int Dim, class Real>
+std::map<int, int> places_of_nodes(const SplineLaneState<Dim, Real, Device>& s,
+                                   const CellNumbering<Dim>& grid) {
+  const auto& lanes = s.memory.lanes;
+  const auto groups = read(lanes.groups);
+  const auto stencils = read(lanes.stencils);
+  std::map<int, int> places;
+  int twice = 0;
+  for (int g = 0; g < lanes.group_count; ++g)
+    for (int l = 0; l < lanes.width; ++l)
+      for (int a = 0; a < (Dim == 1 ? 3 : Dim == 2 ? 9 : 27); ++a) {
+        auto ijk = lanes.cell(groups(g), l);  // the middle node, by its number in the scene's grid
+        bool inside = true;
+        for (int i = 0, digits = a; i < Dim; ++i, digits /= 3) {
+          ijk[i] += digits % 3;  // less one, and one more for the ghost layer
+          inside = inside && ijk[i] >= 0 && ijk[i] <= grid.cells[i];
+        }
+        if (!inside) continue;
+        const int place = stencils(g).node[a / 3] + l + a % 3;
+        twice += places.emplace(grid.node_index(ijk), place).first->second != place;
+      }
+  CHECK(twice == 0);
+  return places;
+}
+
 /// The tractions that act at the nodes of a grid according to cell lanes.
 template <int Dim, class Real>
 std::vector<TractionMask> tractions_of_nodes(const LaneState<Dim, Real, Device>& s) {
@@ -47,6 +74,17 @@ std::vector<TractionMask> tractions_of_nodes(const LaneState<Dim, Real, Device>&
   for (const auto& [node, place] : places_of_nodes<Dim, Real>(s.memory.lanes, s.memory.grid))
     masks[static_cast<size_t>(node)] = tractions(place);
   return masks;
+}
+
+/// The same of dual cell lanes, for the grid with its ghost layer. Nodes that no particle reaches are not kept
+/// by the lanes, and may be active all the same; what they have is taken from `otherwise`.
+template <int Dim, class Real>
+std::vector<TractionMask> tractions_of_nodes(const SplineLaneState<Dim, Real, Device>& s,
+                                             std::vector<TractionMask> otherwise) {
+  const auto tractions = read(s.boundary.tractions);
+  for (const auto& [node, place] : places_of_nodes<Dim, Real>(s, with_ghost_layer(s.grid)))
+    otherwise[static_cast<size_t>(node)] = tractions(place);
+  return otherwise;
 }
 
 /// Largest differences between particles, each relative to the largest number of its kind: positions to the
@@ -101,13 +139,15 @@ struct BodyShape {
 /// double a body drifts by less than a cell: cell lanes find nodal masses and momenta as differences of
 /// moments, to epsilon of those of a cell, so that a particle delta h before the upper face of a cell without
 /// others has a strain of up to epsilon / delta v dt / h from rounding alone.
-template <int Dim, class Real>
+template <int Dim, class Real, template <int, class> class BasisOf = LinearBasis>
 struct BothEngines {
   static constexpr Real amplitude = sizeof(Real) == 4 ? Real(1e-5) : Real(1);
-  LinearBasis<Dim, Real> basis;
+  static constexpr bool splines = BasisOf<Dim, Real>::reach > 0;
+  UniformGrid<Dim, Real> grid;  ///< without a ghost layer
+  BasisOf<Dim, Real> basis;     ///< complete once the engines run
   ParticleBlock<Dim, Real, Device> block, copy;  ///< for the particle kernels, for cell lanes
   State<Dim, Real, Device> state;
-  LaneState<Dim, Real, Device> lanes;
+  std::conditional_t<splines, SplineLaneState<Dim, Real, Device>, LaneState<Dim, Real, Device>> lanes;
   StepOptions<Dim, Real> options;
   long long moved = 0;              ///< from cell to cell, or packed anew
   bool load_seen[4] = {};           ///< by GroupLoad
@@ -116,13 +156,17 @@ struct BothEngines {
   SurfacePoints<Dim, Real, Device> surface;  ///< none, unless a test has some
 
   explicit BothEngines(const BodyShape& shape, unsigned seed = 81) {
-    basis.grid = make_grid<Dim, Real>({{38, 18, 18}});
+    grid = make_grid<Dim, Real>({{38, 18, 18}});
     if (shape.cubic) {
       Vector<Dim, Real> h;
       for (int i = 0; i < Dim; ++i) h[i] = Real(0.5);
-      basis.grid = UniformGrid<Dim, Real>(basis.grid.lower, h, basis.grid.cells);
+      grid = UniformGrid<Dim, Real>(grid.lower, h, grid.cells);
     }
-    const auto& grid = basis.grid;
+    basis.grid = grid;
+    if constexpr (splines) {
+      basis.grid = with_ghost_layer(grid);
+      lanes.grid = grid;
+    }
     Random random(seed);
     std::vector<Vector<Dim, Real>> places;
     for_each_cell(grid, [&](const Vector<Dim, int>& cell) {
@@ -158,9 +202,9 @@ struct BothEngines {
       }
     });
     copy = allocate_particles<Dim, Real, Device>(n);
-    lanes.memory.grid = grid;
+    if constexpr (!splines) lanes.memory.grid = grid;
     options.dt = static_cast<Real>(0.002);
-    masks.assign(static_cast<size_t>(grid.node_count()), 0);
+    masks.assign(static_cast<size_t>(basis.node_count()), 0);
   }
 
   /// All three must be called, if at all, before `run`.
@@ -174,13 +218,13 @@ struct BothEngines {
     lanes.boundary.everywhere = mask;
     for (auto& m : masks) m |= mask;
   }
-  /// where(ijk) gives the tractions of a node.
+  /// where(ijk) gives the tractions of a node of the grid, or of one of the ghost layer.
   template <class Where>
   void declare(const Where& where) {
     lanes.boundary.declared = BoundaryNodes<Device>("vsb::declared", masks.size());
     edit(lanes.boundary.declared, [&](const auto& host) {
       for (size_t I = 0; I < masks.size(); ++I) {
-        host(I) = where(basis.grid.node_ijk(static_cast<int>(I)));
+        host(I) = where(ijk_of(static_cast<int>(I)));
         masks[I] |= host(I);
       }
     });
@@ -198,20 +242,21 @@ struct BothEngines {
   template <class Material, class Volume, class FieldAt, class LaneFieldAt, class Add>
   void run_with_loads(const Material& material, const Volume& volume, const FieldAt& field_at,
                       const LaneFieldAt& lane_field_at, const Add& add, int steps = 100) {
+    if constexpr (splines) basis.walls = lanes.memory.walls;
     Kokkos::deep_copy(copy.block, block.block);
     if (block.state_block.size() > 0) Kokkos::deep_copy(copy.state_block, block.state_block);
     state = make_state(block.particles, basis);
     state.surface = surface;
-    lanes.surface = pack_surface_points(Exec(), surface, basis.grid);
+    if constexpr (!splines) lanes.surface = pack_surface_points(Exec(), surface, grid);
     edit(state.occupancy.tractions,
          [&](const auto& host) { std::copy(masks.begin(), masks.end(), host.data()); });
     state.occupancy.conservative = lanes.boundary.conservative = conservative;
     edit(state.nodes.fixed_components, [&](const auto& host) {
       for (int I = 0; I < basis.node_count(); ++I) {
-        const auto ijk = basis.grid.node_ijk(I);
+        const auto ijk = ijk_of(I);
         for (int i = 0; i < Dim; ++i)
           for (const int side : {0, 1})
-            if (ijk[i] == side * basis.grid.cells[i])
+            if (ijk[i] == side * grid.cells[i])
               host(I) = static_cast<ComponentMask>(host(I) | lanes.memory.walls.fixed[i][side]);
       }
     });
@@ -231,22 +276,34 @@ struct BothEngines {
     moved += lanes.repacked;
     unpack_particles(Exec(), lanes.memory, copy.particles);
   }
-  Difference compare() const { return difference(read(block), read(copy), basis.grid); }
+  Difference compare() const { return difference(read(block), read(copy), grid); }
 
   /// Whether both have the same tractions at the same nodes, some of them at all.
   void check_boundary() {
     REQUIRE(update_occupancy(Exec(), block.particles, state.occupancy, basis) == -1);
     const auto boundary = read(state.occupancy.boundary);
-    const auto mine = tractions_of_nodes(lanes);
-    int wrong = 0;
-    for (size_t I = 0; I < mine.size(); ++I) wrong += boundary(I) != mine[I];
-    CHECK(wrong == 0);
+    std::vector<TractionMask> theirs(boundary.data(), boundary.data() + boundary.extent(0)), mine;
+    if constexpr (splines)
+      mine = tractions_of_nodes(lanes, theirs);
+    else
+      mine = tractions_of_nodes(lanes);
+    CHECK((mine == theirs));
     CHECK(state.occupancy.boundary_node_count > 0);
-    CHECK(count_loaded_nodes(Exec(), lanes.memory.lanes, lanes.boundary) ==
-          state.occupancy.boundary_node_count);
+    int mine_loaded = 0;
+    if constexpr (splines)
+      mine_loaded = count_loaded_nodes(Exec(), lanes);
+    else
+      mine_loaded = count_loaded_nodes(Exec(), lanes.memory.lanes, lanes.boundary);
+    CHECK(mine_loaded == state.occupancy.boundary_node_count);
   }
 
  private:
+  /// A node's numbers along the axes in the grid without a ghost layer.
+  Vector<Dim, int> ijk_of(int node) const {
+    auto ijk = basis.grid.node_ijk(node);
+    for (int i = 0; i < Dim; ++i) ijk[i] -= basis.reach;
+    return ijk;
+  }
   void note_loads() {
     const auto groups = read(lanes.memory.lanes.groups);
     for (int g = 0; g < lanes.memory.lanes.group_count; ++g)
@@ -263,8 +320,8 @@ LinearElastic<Real> elastic() {
 template <class Real>
 constexpr double engine_tolerance = sizeof(Real) == 8 ? 1e-12 : 1e-5;
 
-template <int Dim, class Real>
-void check_same(const BothEngines<Dim, Real>& engines) {
+template <int Dim, class Real, template <int, class> class BasisOf>
+void check_same(const BothEngines<Dim, Real, BasisOf>& engines) {
   const auto d = engines.compare();
   CHECK(d.same_mass);
   CHECK(d.position < engine_tolerance<Real>);

@@ -4,6 +4,7 @@
 /// wider support.
 #include "wide_bases.hpp"
 
+#include "both_engines.hpp"
 #include <set>
 #include <vsb/kernels/balance.hpp>
 
@@ -475,6 +476,17 @@ TEMPLATE_TEST_CASE("N1 of wide bases against lists, random bodies and walls", ""
       CAPTURE(nx, fill);
       CHECK(wrong == 0);
       CHECK(counted == expected_count);
+      if (block.particles.count() == 0) continue;
+
+      // The same on cell lanes, which keep the nodes that particles reach.
+      SplineLaneState<Dim, double, Device> lanes;
+      lanes.grid = inner;
+      lanes.memory.walls = basis.walls;
+      lanes.boundary.declared = tractions;
+      REQUIRE(pack_lanes(Exec(), block.particles, lanes) == -1);
+      std::vector<TractionMask> theirs(got.data(), got.data() + got.extent(0));
+      CHECK((tractions_of_nodes(lanes, theirs) == theirs));
+      CHECK(count_loaded_nodes(Exec(), lanes) == expected_count);
     }
 }
 

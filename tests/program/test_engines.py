@@ -12,7 +12,6 @@ from vsb_program import SCENES, ProgramTest, last_fields, vsb
 # What a scene has that the cell lanes do not: the reason that vsb check must give.
 REASONS = {
     "column-graded": "its grid is mapped",
-    "cylinder-accurate": "its basis is not linear",
     "cylinder-exact": None,
     "cylinder-polar": "its grid is mapped",
     "cylinder-voids": "method.void_filter is on",
@@ -84,6 +83,17 @@ class BothEngines(ProgramTest):
                 compared += 1
         self.assertGreaterEqual(compared, 10)
 
+    def test_quadratic_bsplines(self):
+        # Scenes of all dimensions, loads and supports with B-splines, cylinder-accurate.toml beside them.
+        splines = ("--set", 'method.basis="quadratic_bspline"')
+        for scene, more in {"column": (), "column-2d": (), "column-3d": (), "column-large-strain": (), "closed-body": (),
+                            "closed-body-3d": (), "cylinder": ("--set", "grid.spacing=0.5"),
+                            "cylinder-concentric": ("--set", "grid.spacing=0.5"), "cylinder-free": (), "ellipse-exact": (),
+                            "yield-cylinder": (), "wellbore-slice": ()}.items():
+            with self.subTest(scene=scene):
+                self.assertEqual(self.engine_of(scene, *splines, *more), "cell lanes")
+                self.assert_same_fields(scene, *splines, *more)
+
     def test_every_imposition(self):
         coarse = ("--set", "grid.spacing=0.5")
         for scene, more in {"column": (), "column-2d": (), "column-3d": (), "cylinder": coarse,
@@ -129,6 +139,10 @@ class BothEngines(ProgramTest):
         }.items():
             arguments = [part for setting in settings for part in ("--set", setting)]
             self.assertIn(reason, self.engine_of("cylinder", *arguments))
+        self.assertIn("its basis is ugimp", self.engine_of("cylinder", "--set", "method.basis=ugimp"))
+        self.assertIn("its basis is quadratic_bspline, and traction",
+                      self.engine_of("cylinder", "--set", "method.basis=quadratic_bspline",
+                                     "--set", 'traction[0].imposition="boundary_particles"'))
         self.assertIn("is self-balanced", self.engine_of("closed-body", "--set", "traction[0].self_balanced=true"))
 
     def test_an_unknown_engine(self):
