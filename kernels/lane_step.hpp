@@ -9,6 +9,7 @@
 #include <vsb/kernels/lane_sweeps.hpp>
 #include <vsb/kernels/mark_lanes.hpp>
 #include <vsb/kernels/migrate_lanes.hpp>
+#include <vsb/kernels/repack_lanes.hpp>
 #include <vsb/kernels/step.hpp>
 #include <vsb/kernels/update_lane_nodes.hpp>
 

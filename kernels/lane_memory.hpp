@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// What cell lanes need beside their particles (views/cell_lanes.hpp), and where their memory comes from.
+#pragma once
+
+#include <vsb/physics/uniform_grid.hpp>
+#include <vsb/physics/walls.hpp>
+#include <vsb/views/cell_lanes.hpp>
+
+namespace vsb {
+
+/// How far from particles there are groups too, for those that move there: in groups along x, in rows along
+/// the other axes.
+template <int Dim>
+struct Reach {
+  Vector<Dim, int> below = Vector<Dim, int>::zero(), above = Vector<Dim, int>::zero();
+  bool any() const {
+    bool some = false;
+    for (int i = 0; i < Dim; ++i) some = some || below[i] > 0 || above[i] > 0;
+    return some;
+  }
+};
+
+/// How often a step looks at all particles: as their number per cell makes it worth while.
+enum class Sweeps : std::uint8_t { chosen, one, two };
+
+/// Whether one sweep is faster, as measured: the mass matrix is work per cell, what it saves is work per
+/// particle, and in 3D mostly memory traffic, which only counts where the particles do not fit into caches.
+template <int Dim, class Real, class Device>
+bool one_sweep_is_faster(const CellLanes<Dim, Real, Device>& lanes, int cells_with_particles) {
+  constexpr int per_cell = CellLanes<Dim, Real, Device>::mass_matrix_size;
+  constexpr double caches = 24e6;  // bytes
+  const double bytes = static_cast<double>(sizeof(Real)) * lanes.columns() * lanes.particle_count;
+  return lanes.particle_count >= per_cell * cells_with_particles && (Dim < 3 || bytes > caches);
+}
+
+/// What the cell lanes of a body need beside the particles.
+template <int Dim, class Real, class Device>
+struct LaneMemory {
+  CellLanes<Dim, Real, Device> lanes;
+  LaneNodes<Dim, Real, Device> nodes;
+  Leavers<Dim, Real, Device> leavers;
+  UniformGrid<Dim, Real> grid;
+  Walls<Dim> walls;
+  int slack = 1;  ///< slots that a group has to spare
+  Reach<Dim> reach;
+  Sweeps sweeps = Sweeps::chosen;
+  typename CellLanes<Dim, Real, Device>::Ints source;  ///< scratch of repack_lanes, as is column_before
+  Kokkos::View<Real*, Device> column_before;
+};
+
+/// Makes steps take one sweep or two.
+template <int Dim, class Real, class Device>
+void set_sweeps(CellLanes<Dim, Real, Device>& lanes, bool one) {
+  lanes.mass_matrices =
+      one ? decltype(lanes.mass_matrices)("vsb::mass_matrices", static_cast<size_t>(lanes.group_count) *
+                                                                    lanes.mass_matrix_size * lanes.width)
+          : decltype(lanes.mass_matrices)();
+}
+
+namespace detail {
+
+/// The first n entries of memory that is kept from one use to the next.
+template <class View>
+View scratch(View& kept, size_t n) {
+  if (kept.extent(0) < n) {
+    kept = View();
+    kept = View(Kokkos::view_alloc("vsb::scratch", Kokkos::WithoutInitializing), n + n / 8);
+  }
+  return Kokkos::subview(kept, std::make_pair(size_t(0), n));
+}
+
+/// Rows to allocate for some that grow: on the host, rows that are not written to take no memory.
+template <class Device>
+int with_room(int rows) {
+  using Memory = typename Device::memory_space;
+  return Kokkos::SpaceAccessibility<Kokkos::HostSpace, Memory>::accessible ? 2 * rows : rows + rows / 16;
+}
+
+/// Columns for `slots` slots, and room for more.
+template <int Dim, class Real, class Device>
+void allocate_columns(CellLanes<Dim, Real, Device>& lanes, int slots) {
+  lanes.data =
+      decltype(lanes.data)(Kokkos::view_alloc("vsb::cell_lanes", Kokkos::WithoutInitializing),
+                           static_cast<size_t>(padded_rows<Real>(with_room<Device>(slots) * lanes.width)),
+                           static_cast<size_t>(lanes.columns()));
+}
+
+/// Numbers of particles for `slots` slots.
+template <int Dim, class Real, class Device>
+void allocate_numbers(CellLanes<Dim, Real, Device>& lanes, int slots) {
+  lanes.id = decltype(lanes.id)(Kokkos::view_alloc("vsb::lane_ids", Kokkos::WithoutInitializing),
+                                static_cast<size_t>(slots) * lanes.width);
+  lanes.held = decltype(lanes.held)("vsb::lanes_held", static_cast<size_t>(slots));
+}
+
+/// Lists with room for all particles of their layers; memory that nobody writes to is not taken.
+template <class Exec, int Dim, class Real, class Device>
+void allocate_leavers(const Exec& exec, LaneMemory<Dim, Real, Device>& m) {
+  const auto& lanes = m.lanes;
+  const auto slots = static_cast<size_t>(lanes.slot_count),
+             numbers = static_cast<size_t>(lanes.columns() * lanes.width);
+  auto& l = m.leavers;
+  if (l.data.extent(0) < slots || l.data.extent(1) != numbers) {
+    l.data =
+        decltype(l.data)(Kokkos::view_alloc("vsb::leavers", Kokkos::WithoutInitializing), slots, numbers);
+    l.head = decltype(l.head)(Kokkos::view_alloc("vsb::leaver_heads", Kokkos::WithoutInitializing), slots);
+  }
+  const auto per_layer = [&](const std::string& name) {
+    return decltype(l.first)(name, static_cast<size_t>(lanes.layers()));
+  };
+  l.count = per_layer("vsb::leaver_count");
+  l.lost = per_layer("vsb::leavers_lost");
+  l.many = per_layer("vsb::leavers_many");
+  l.unsummed = per_layer("vsb::unsummed_layers");
+  l.first = per_layer("vsb::leaver_first");
+  const auto first = l.first;
+  Kokkos::parallel_for(
+      "vsb::first_leavers", Kokkos::RangePolicy<Exec>(exec, 0, lanes.layers()), KOKKOS_LAMBDA(int k) {
+        const int g = lanes.layer_first(k);
+        first(k) = g < lanes.group_count ? lanes.groups(g).first : 0;
+      });
+}
+
+}  // namespace detail
+
+}  // namespace vsb
