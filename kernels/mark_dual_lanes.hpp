@@ -157,7 +157,8 @@ int count_marked_nodes(const Exec& exec, const CellLanes<Dim, Real, Device>& lan
   int count = 0;
   Kokkos::parallel_reduce(
       "vsb::count_marked_nodes", Kokkos::RangePolicy<Exec>(exec, 0, tiling.node_row_count()),
-      kernel::CountMarkedNodes<Dim, Real, Device>{{lanes, b, tiling, with_ghost_cells(last), false, 1}}, count);
+      kernel::CountMarkedNodes<Dim, Real, Device>{{lanes, b, tiling, with_ghost_cells(last), false, 1}},
+      count);
   exec.fence();
   return count;
 }

@@ -66,9 +66,8 @@ struct MarkLaneNodes {
     const Vector<2, int> from{{at[0] - 1 - reach, at[1] - 1 - reach}}, to{{at[0] + reach, at[1] + reach}};
     boundary.changed(r) = 0;
     for (int w = 0; w < tiling.words; ++w) {
-      const std::uint64_t active =
-          tiling.existing(at, w, 1) &
-          dilated_word(boundary.bits.occupied, tiling, w, from, to, reach, 1 + reach);
+      const std::uint64_t active = tiling.existing(at, w, 1) & dilated_word(boundary.bits.occupied, tiling, w,
+                                                                            from, to, reach, 1 + reach);
       const std::uint64_t marked =
           active & dilated_word(boundary.bits.boundary, tiling, w, from, to, reach, 1 + reach);
       if (!anew && marked == boundary.marked(r, w) && active == boundary.active(r, w)) continue;
@@ -153,7 +152,8 @@ struct LoadGroup {
                  : (all & cells) == (any & cells) ? GroupLoad::whole
                                                   : GroupLoad::part;
     if (other || group.load == GroupLoad::mixed || group.load != load_before ||
-        group.tractions != tractions_before) boundary.stale(group.row / lanes.rows_per_layer()) = 1;
+        group.tractions != tractions_before)
+      boundary.stale(group.row / lanes.rows_per_layer()) = 1;
   }
 };
 

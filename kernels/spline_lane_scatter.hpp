@@ -15,8 +15,7 @@ KOKKOS_FORCEINLINE_FUNCTION void coefficients_of(const LaneNodes<Dim, Real, Devi
                                                  const LaneStencil<Dim>& stencil,
                                                  QuadraticPolynomial<Dim, P>& c) {
   static_for<LaneStencil<Dim>::rows>([&](auto r) VSB_UNROLLED {
-    static_for<3>([&](auto a)
-                      VSB_UNROLLED { c[3 * r + a] = nodes.load(column, stencil.node[r] + a); });
+    static_for<3>([&](auto a) VSB_UNROLLED { c[3 * r + a] = nodes.load(column, stencil.node[r] + a); });
   });
   quadratic_from_nodes<Dim>(c);
 }
@@ -40,8 +39,7 @@ class SplineLayerSums {
       for (int plane = 0; plane < planes; ++plane) {
         const int end = lanes.plane_first(layer + plane + 1);
         Real* column = nodes.at(nodes.sums_of_plane(plane) + c, 0);
-        for (int n = lanes.plane_first(layer + plane); n < end; n += P::width)
-          P(Real(0)).store(column + n);
+        for (int n = lanes.plane_first(layer + plane); n < end; n += P::width) P(Real(0)).store(column + n);
       }
   }
   /// Call it for every group of the layer, in order.

@@ -3,8 +3,8 @@
 /// One explicit MUSL step on cell lanes with quadratic B-splines, as kernels/lane_step.hpp makes it with
 /// linear functions: two sweeps, and tractions of the (modified) virtual stress boundary method alone.
 ///
-/// Lanes hold dual cells, the points nearest to a node of the scene's grid, in which a particle has always the
-/// same 3^Dim nodes. Nodes beyond a wall are mirror images (physics/walls.hpp).
+/// Lanes hold dual cells, the points nearest to a node of the scene's grid, in which a particle has always
+/// the same 3^Dim nodes. Nodes beyond a wall are mirror images (physics/walls.hpp).
 #pragma once
 
 #include <vsb/kernels/lane_step.hpp>
@@ -69,8 +69,7 @@ template <class Exec, int Dim, class Real, class Device>
 bool cells_changed(const Exec& exec, SplineLaneState<Dim, Real, Device>& s, int leavers) {
   if (leavers == 0) {
     int layers = 0;
-    Kokkos::parallel_reduce("vsb::count_crossed",
-                            Kokkos::RangePolicy<Exec>(exec, 0, s.memory.lanes.layers()),
+    Kokkos::parallel_reduce("vsb::count_crossed", Kokkos::RangePolicy<Exec>(exec, 0, s.memory.lanes.layers()),
                             kernel::AddUp<Device>{s.crossed}, layers);
     exec.fence();
     if (layers == 0) return false;

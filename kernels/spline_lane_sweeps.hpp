@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The sweeps over dual cell lanes of one MUSL step with quadratic B-splines, a layer each call: A, B, C, and C
-/// with A of the next step, as in kernels/lane_sweeps.hpp. Which corner of its dual cell a particle is in says
-/// which cell of the scene's grid it is in: C notes where that changes, for Algorithm 1.
+/// The sweeps over dual cell lanes of one MUSL step with quadratic B-splines, a layer each call: A, B, C, and
+/// C with A of the next step, as in kernels/lane_sweeps.hpp. Which corner of its dual cell a particle is in
+/// says which cell of the scene's grid it is in: C notes where that changes, for Algorithm 1.
 #pragma once
 
 #include <vsb/kernels/lane_sweeps.hpp>
@@ -144,8 +144,8 @@ struct MoveSplineGroup : MoveGroup<false, Material, Volume, Dim, Real, Device> {
     const P half(Real(0.5));
     auto different = half < half;
     static_for<Dim>([&](auto i) VSB_UNROLLED {
-      different = different | ((before[i] < half) & (after[i] >= half)) |
-                  ((before[i] >= half) & (after[i] < half));
+      different =
+          different | ((before[i] < half) & (after[i] >= half)) | ((before[i] >= half) & (after[i] < half));
     });
     if (any(different) && (bits_of(different) & lanes.held(entry / P::width)) != 0) crossed(layer) = 1;
   }

@@ -101,7 +101,7 @@ bool read_view(Reader& r, const View& view) {
 
 template <int Dim, class Real, class State>
 LaneEngine<Dim, Real, State>::LaneEngine(const Setup& setup, const Particles<Dim, Real, Device>& particles,
-                                  const SurfacePoints<Dim, Real, Device>& surface)
+                                         const SurfacePoints<Dim, Real, Device>& surface)
     : setup_(setup) {
   set_grid(state_, setup.grid);
   state_.memory.walls = setup.walls;
@@ -116,7 +116,8 @@ LaneEngine<Dim, Real, State>::LaneEngine(const Setup& setup, const Particles<Dim
 
 template <int Dim, class Real, class State>
 int LaneEngine<Dim, Real, State>::prepare(const Loads<Dim, Real>& loads) {
-  loads.template with_lane_field<!State::splines>([&](const auto& field) { prepare_lane_step(exec_, state_, field); });
+  loads.template with_lane_field<!State::splines>(
+      [&](const auto& field) { prepare_lane_step(exec_, state_, field); });
   prepared_ = true;
   return add_loads(loads);
 }
@@ -126,8 +127,8 @@ int LaneEngine<Dim, Real, State>::add_loads(const Loads<Dim, Real>& loads) {
   if (State::splines || (state_.surface.count() == 0 && state_.original == 0)) return -1;
   int lost = -1;
   if constexpr (!State::splines)
-    lost =
-        loads.with_field_beside_lanes([&](const auto& field) { return add_lane_loads(exec_, state_, field); });
+    lost = loads.with_field_beside_lanes(
+        [&](const auto& field) { return add_lane_loads(exec_, state_, field); });
   return lost < 0 ? -1 : state_.memory.lanes.particle_count + lost;
 }
 
@@ -146,7 +147,7 @@ int LaneEngine<Dim, Real, State>::step(const Loads<Dim, Real>& next) {
 
 template <int Dim, class Real, class State>
 void LaneEngine<Dim, Real, State>::unpack(const Particles<Dim, Real, Device>& particles,
-                                   const SurfacePoints<Dim, Real, Device>& surface) const {
+                                          const SurfacePoints<Dim, Real, Device>& surface) const {
   unpack_particles(exec_, state_.memory, particles);
   unpack_homeless(exec_, state_.memory, particles);
   unpack_surface_points(exec_, state_.surface, state_.memory.grid, surface);
@@ -165,10 +166,10 @@ size_t LaneEngine<Dim, Real, State>::bytes() const {
   const auto& n = state_.memory.nodes;
   const auto& b = state_.boundary;
   const auto& p = state_.surface;
-  return bytes(l.data, l.id, l.held, l.mass_matrices, l.groups, l.stencils, l.layer_first, l.plane_first, l.group_at,
-               l.chunk_at, n.data, n.fixed, b.bits.occupied, b.bits.exterior, b.bits.boundary, b.marked,
-               b.active, b.tractions, p.cell, p.xi, p.area, p.tractions, p.carrier, p.order, p.run_cell,
-               p.run_first, p.cell_count);
+  return bytes(l.data, l.id, l.held, l.mass_matrices, l.groups, l.stencils, l.layer_first, l.plane_first,
+               l.group_at, l.chunk_at, n.data, n.fixed, b.bits.occupied, b.bits.exterior, b.bits.boundary,
+               b.marked, b.active, b.tractions, p.cell, p.xi, p.area, p.tractions, p.carrier, p.order,
+               p.run_cell, p.run_first, p.cell_count);
 }
 
 template <int Dim, class Real, class State>
