@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// What a single particle of dual cell lanes gives to its nodes: the quadratic B-splines at its place, and the
-/// sums of the layer that it goes to.
+/// What a single particle of dual cell lanes gives to its nodes: the quadratic B-splines at its place, and
+/// the sums of the layer that it goes to.
 #pragma once
 
 #include <vsb/physics/quadratic_bspline_basis.hpp>

@@ -30,29 +30,29 @@ KOKKOS_FORCEINLINE_FUNCTION void set_zero(QuadraticPolynomial<Dim, P>& m) {
 }
 
 /// Calls work(anew, entry, count, products) for the slots of a group, at most block_slots at a time, from an
-/// entry on: products[s] = make(xi) of slot s; anew with the first of them.
+/// entry on: products[s] = make(xi) of slot s; anew, a type, with the first of them.
 template <int Dim, class Real, class Device, class Make, class Work>
 KOKKOS_FORCEINLINE_FUNCTION void for_each_block(const CellLanes<Dim, Real, Device>& lanes,
                                                 const LaneGroup<Dim>& group, const Make& make,
                                                 const Work& work) {
   using P = typename Lanes<Real>::Pack;
   TensorProduct<Dim, P> products[block_slots];
-  int first = 0;
-  do {
+  const auto block = [&](auto anew, int first) VSB_UNROLLED {
     const int count = group.slots - first < block_slots ? group.slots - first : block_slots;
     const size_t entry = lanes.begin(group) + static_cast<size_t>(first) * P::width;
     for (int s = 0; s < count; ++s)
       products[s] = make(lanes.load_xi(entry + static_cast<size_t>(s) * P::width));
-    work(first == 0, entry, count, products);
-    first += block_slots;
-  } while (first < group.slots);
+    work(anew, entry, count, products);
+  };
+  block(std::true_type{}, 0);
+  for (int first = block_slots; first < group.slots; first += block_slots) block(std::false_type{}, first);
 }
 
 /// sum[n] = (anew) or += sum over slots of weight(n, entry) times their products, by add(n, sum, weight,
 /// product); n is a compile-time constant. As many sums at a time as stay in registers.
-template <int Count, int Dim, class P, class Weight, class Add>
-KOKKOS_FORCEINLINE_FUNCTION void accumulate(QuadraticPolynomial<Dim, P> (&sum)[Count], bool anew,
-                                            size_t entry, int count, const TensorProduct<Dim, P>* products,
+template <int Count, int Dim, class P, class Anew, class Weight, class Add>
+KOKKOS_FORCEINLINE_FUNCTION void accumulate(QuadraticPolynomial<Dim, P> (&sum)[Count], Anew, size_t entry,
+                                            int count, const TensorProduct<Dim, P>* products,
                                             const Weight& weight, const Add& add) {
   constexpr int together = Dim == 3 ? 1 : Count;
   static_for<Count / together>([&](auto pass) VSB_UNROLLED {
@@ -65,10 +65,12 @@ KOKKOS_FORCEINLINE_FUNCTION void accumulate(QuadraticPolynomial<Dim, P> (&sum)[C
       });
     static_for<together>([&](auto n) VSB_UNROLLED {
       auto& to = sum[pass * together + n];
-      if (anew)
-        static_for<to.size>([&](auto k) VSB_UNROLLED { to[k] = in_registers[n][k]; });
-      else
-        static_for<to.size>([&](auto k) VSB_UNROLLED { to[k] += in_registers[n][k]; });
+      static_for<to.size>([&](auto k) VSB_UNROLLED {
+        if constexpr (Anew::value)
+          to[k] = in_registers[n][k];
+        else
+          to[k] += in_registers[n][k];
+      });
     });
   });
 }
@@ -82,7 +84,7 @@ KOKKOS_FORCEINLINE_FUNCTION void mass_and_momentum(const CellLanes<Dim, Real, De
   QuadraticPolynomial<Dim, P> sum[count];
   for_each_block(
       lanes, group, [&](const auto& xi) VSB_UNROLLED { return TensorProduct<Dim, P>::splines(xi); },
-      [&](bool anew, size_t entry, int slots, const auto* products) VSB_UNROLLED {
+      [&](auto anew, size_t entry, int slots, const auto* products) VSB_UNROLLED {
         accumulate<count, Dim, P>(
             sum, anew, entry, slots, products,
             [&](auto n, size_t e) VSB_UNROLLED {
@@ -124,8 +126,8 @@ struct NotNeeded {
 template <int Dim, class P>
 using StressMoments = QuadraticPolynomial<Dim, P>[pair_count(Dim)];
 
-template <int Dim, class P, class Value>
-KOKKOS_FORCEINLINE_FUNCTION void add_stress_moments(StressMoments<Dim, P>& moments, bool anew, size_t entry,
+template <int Dim, class P, class Anew, class Value>
+KOKKOS_FORCEINLINE_FUNCTION void add_stress_moments(StressMoments<Dim, P>& moments, Anew anew, size_t entry,
                                                     int count, const TensorProduct<Dim, P>* products,
                                                     const Value& value) {
   accumulate<pair_count(Dim), Dim, P>(
@@ -158,7 +160,7 @@ template <int Dim, class Real, class Device, class P>
   for_each_block(
       lanes, group,
       [&](const auto& xi) VSB_UNROLLED { return TensorProduct<Dim, P>::monomials(Powers<Dim, P>(xi)); },
-      [&](bool anew, size_t entry, int slots, const auto* products) VSB_UNROLLED {
+      [&](auto anew, size_t entry, int slots, const auto* products) VSB_UNROLLED {
         add_stress_moments<Dim, P>(moments, anew, entry, slots, products, [&](int c, size_t e) VSB_UNROLLED {
           return P((in_lane[c] - lanes.load(lanes.stress_column + c, e)) *
                    lanes.load(lanes.volume_column, e));

@@ -39,7 +39,7 @@ template <class Field, int Dim, class Real, class Device, class P>
   for_each_block(
       lanes, group,
       [&](const auto& xi) VSB_UNROLLED { return TensorProduct<Dim, P>::monomials(Powers<Dim, P>(xi)); },
-      [&](bool anew, size_t entry, int slots, const auto* products) VSB_UNROLLED {
+      [&](auto anew, size_t entry, int slots, const auto* products) VSB_UNROLLED {
         accumulate<1, Dim, P>(
             volume, anew, entry, slots, products,
             [&](auto, size_t e) VSB_UNROLLED { return lanes.load(lanes.volume_column, e); },
@@ -94,21 +94,19 @@ template <class Field, int Dim, class Real, class Device, class P>
       group, stencil.node, stencil.loaded, on.tractions, [&](TractionMask tractions, const auto& bits) {
         StressMoments<Dim, P> moments;
         QuadraticPolynomial<Dim, P> t[Dim];
-        static_for<pair_count(Dim)>([&](auto n) VSB_UNROLLED { set_zero<Dim>(moments[n]); });
-        static_for<Dim>([&](auto i) VSB_UNROLLED { set_zero<Dim>(t[i]); });
         for_each_block(
             lanes, group,
             [&](const auto& xi) VSB_UNROLLED { return TensorProduct<Dim, P>::monomials(Powers<Dim, P>(xi)); },
-            [&](bool, size_t entry, int slots, const auto* products) {
+            [&](auto anew, size_t entry, int slots, const auto* products) {
               VirtualStressValue<Dim, P> bar[block_slots];
               for (int s = 0; s < slots; ++s)
                 evaluate(on, group, field, tractions, entry + static_cast<size_t>(s) * P::width, bar[s]);
               const auto slot_of = [&](size_t e) { return (e - entry) / P::width; };
-              add_stress_moments<Dim, P>(moments, false, entry, slots, products,
+              add_stress_moments<Dim, P>(moments, anew, entry, slots, products,
                                          [&](int c, size_t e)
                                              VSB_UNROLLED { return bar[slot_of(e)].stress[c]; });
               accumulate<Dim, Dim, P>(
-                  t, false, entry, slots, products,
+                  t, anew, entry, slots, products,
                   [&](auto i, size_t e) VSB_UNROLLED { return bar[slot_of(e)].divergence[i]; },
                   [](auto, auto& s, P w, const auto& product)
                       VSB_UNROLLED { add_monomials<AllNeeded, Dim>(s, w, product); });

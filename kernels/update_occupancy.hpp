@@ -2,9 +2,9 @@
 /// \file
 /// What follows from where the particles are: their bins, and, when a particle has changed its bin, the order
 /// of the particles within the bins and the boundary nodes. Where bins are no cells (bases with reach) the
-/// boundary nodes are found at every call: a particle may change its cell and stay in its bin. With a fill criterion the boundary nodes follow
-/// the volumes too: the cells' fill is summed at every call, so that the nodes depend on the particles of the
-/// moment alone, and a resumed run finds the ones it had.
+/// boundary nodes are found at every call: a particle may change its cell and stay in its bin. With a fill
+/// criterion the boundary nodes follow the volumes too: the cells' fill is summed at every call, so that the
+/// nodes depend on the particles of the moment alone, and a resumed run finds the ones it had.
 #pragma once
 
 #include <vsb/kernels/filter_voids.hpp>

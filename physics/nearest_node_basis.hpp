@@ -35,8 +35,7 @@ struct NodeTriple {
 /// The products of one function of every direction. Digit i of a, to the base 3, is the node's place in
 /// direction i.
 template <int Dim, int Support, class T>
-KOKKOS_FORCEINLINE_FUNCTION void multiply_triples(const NodeTriple<T> (&f)[Dim],
-                                                  Shape<Dim, Support, T>& s) {
+KOKKOS_FORCEINLINE_FUNCTION void multiply_triples(const NodeTriple<T> (&f)[Dim], Shape<Dim, Support, T>& s) {
   for (int a = 0; a < Support; ++a) {
     s.N[a] = 1;
     for (int j = 0; j < Dim; ++j) s.dN[a][j] = 1;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Quadratic B-splines (physics/quadratic_bspline_basis.hpp) in the dual cell of a node, the points nearest to
-/// it, as polynomials of local coordinates xi in [0, 1]^Dim; k = sum_i 3^i k_i, k_i = 0, 1, 2:
+/// Quadratic B-splines (physics/quadratic_bspline_basis.hpp) in the dual cell of a node, the points nearest
+/// to it, as polynomials of local coordinates xi in [0, 1]^Dim; k = sum_i 3^i k_i, k_i = 0, 1, 2:
 /// - a nodal field is sum_k c_k r_k with c from its values by differences alone, where
 ///     r_k(xi) = prod_i (1, xi_i + 1/2, xi_i^2 / 2) [k_i];
 /// - a sum of gradients over particles follows from the moments of
@@ -119,7 +119,8 @@ KOKKOS_FORCEINLINE_FUNCTION Vector<Dim, T> quadratic_gradient_at(const Quadratic
   return gradient;
 }
 
-/// m_k += c sum_p w_p dq_k / dxi_j, from the moments sum_p w_p q_k, of which those with k_j = 2 are not needed.
+/// m_k += c sum_p w_p dq_k / dxi_j, from the moments sum_p w_p q_k, of which those with k_j = 2 are not
+/// needed.
 template <int j, int Dim, class T>
 KOKKOS_FORCEINLINE_FUNCTION void add_slope_moments(QuadraticPolynomial<Dim, T>& m, T c,
                                                    const QuadraticPolynomial<Dim, T>& w) {

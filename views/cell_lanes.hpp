@@ -80,10 +80,10 @@ struct CellLanes {
   Columns data;                          ///< [slot * width + lane][column]
   Ints id;                               ///< [slot * width + lane]: number of the particle; ghosts: -1
   Kokkos::View<LaneMask*, Device> held;  ///< [slot]: bit l: lane l holds a particle
-  Kokkos::View<LaneGroup<Dim>*, Device> groups;  ///< by layer, row and x
+  Kokkos::View<LaneGroup<Dim>*, Device> groups;      ///< by layer, row and x
   Kokkos::View<LaneStencil<Dim>*, Device> stencils;  ///< [group]: where cells are dual
-  Ints layer_first;                              ///< [layers + 1]: the groups of a layer
-  Ints plane_first;                              ///< [layers + 2]: the nodes of a plane
+  Ints layer_first;                                  ///< [layers + 1]: the groups of a layer
+  Ints plane_first;                                  ///< [layers + 2]: the nodes of a plane
   Ints group_at;  ///< [row of cells][groups per row]: number, -1 where there is none
   Ints chunk_at;  ///< [row of nodes][groups per row + 1]: `width` nodes side by side
   Kokkos::View<Real*, Device>

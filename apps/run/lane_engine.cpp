@@ -18,7 +18,8 @@ std::string obstacle(const Scene& scene) {
   if (scene.method.basis == BasisKind::quadratic_bspline)
     for (const auto& traction : scene.tractions)
       if (traction.imposition != Imposition::virtual_stress)
-        return fmt::format("its basis is quadratic_bspline, and traction '{}' no virtual stress", traction.name);
+        return fmt::format("its basis is quadratic_bspline, and traction '{}' no virtual stress",
+                           traction.name);
   for (const auto& body : scene.bodies) {
     if (!(body.material == scene.bodies.front().material)) return "its bodies differ in their material";
   }

@@ -76,8 +76,8 @@ std::vector<TractionMask> tractions_of_nodes(const LaneState<Dim, Real, Device>&
   return masks;
 }
 
-/// The same of dual cell lanes, for the grid with its ghost layer. Nodes that no particle reaches are not kept
-/// by the lanes, and may be active all the same; what they have is taken from `otherwise`.
+/// The same of dual cell lanes, for the grid with its ghost layer. Nodes that no particle reaches are not
+/// kept by the lanes, and may be active all the same; what they have is taken from `otherwise`.
 template <int Dim, class Real>
 std::vector<TractionMask> tractions_of_nodes(const SplineLaneState<Dim, Real, Device>& s,
                                              std::vector<TractionMask> otherwise) {
@@ -143,8 +143,8 @@ template <int Dim, class Real, template <int, class> class BasisOf = LinearBasis
 struct BothEngines {
   static constexpr Real amplitude = sizeof(Real) == 4 ? Real(1e-5) : Real(1);
   static constexpr bool splines = BasisOf<Dim, Real>::reach > 0;
-  UniformGrid<Dim, Real> grid;  ///< without a ghost layer
-  BasisOf<Dim, Real> basis;     ///< complete once the engines run
+  UniformGrid<Dim, Real> grid;                   ///< without a ghost layer
+  BasisOf<Dim, Real> basis;                      ///< complete once the engines run
   ParticleBlock<Dim, Real, Device> block, copy;  ///< for the particle kernels, for cell lanes
   State<Dim, Real, Device> state;
   std::conditional_t<splines, SplineLaneState<Dim, Real, Device>, LaneState<Dim, Real, Device>> lanes;

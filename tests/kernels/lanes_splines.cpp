@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// 100 steps on cell lanes with quadratic B-splines are 100 steps of the particle kernels: without load, under
-/// virtual stresses of all kinds, at rest and moving, with gravity, damping and walls that mirror.
+/// 100 steps on cell lanes with quadratic B-splines are 100 steps of the particle kernels: without load,
+/// under virtual stresses of all kinds, at rest and moving, with gravity, damping and walls that mirror.
 #include <cstdio>
 
 #include "both_engines.hpp"
@@ -173,8 +173,8 @@ TEMPLATE_TEST_CASE_SIG("splines: fields of all kinds, other ones from node to no
   }
 }
 
-TEMPLATE_TEST_CASE_SIG("splines: more particles in a cell than the sums take at a time", "",
-                       ((int Dim), Dim), 1, 2, 3) {
+TEMPLATE_TEST_CASE_SIG("splines: more particles in a cell than the sums take at a time", "", ((int Dim), Dim),
+                       1, 2, 3) {
   // 40 in each of a few cells, as some packings have them.
   Engines<Dim, double> engines({false, 0.3});
   const auto before = read(engines.block);
@@ -184,8 +184,8 @@ TEMPLATE_TEST_CASE_SIG("splines: more particles in a cell than the sums take at 
       const int cell = k / 40 % 5;
       for (int i = 0; i < Dim; ++i) {
         const double within = (p.position(k, i) - engines.grid.lower[i]) * engines.grid.inverse_spacing[i];
-        p.position(k, i) = engines.grid.lower[i] +
-                           engines.grid.spacing[i] * (4 + cell + within - std::floor(within));
+        p.position(k, i) =
+            engines.grid.lower[i] + engines.grid.spacing[i] * (4 + cell + within - std::floor(within));
       }
       p.volume(k) /= 10;
       p.mass(k) /= 10;
@@ -206,7 +206,8 @@ TEMPLATE_TEST_CASE_SIG("splines: more particles in a cell than the sums take at 
   engines.check_boundary();
 }
 
-TEST_CASE("print state hashes of splines on cell lanes", "[.][state_hashes]") {  // run by kernels/same_bits.py
+TEST_CASE("print state hashes of splines on cell lanes",
+          "[.][state_hashes]") {  // run by kernels/same_bits.py
   for (const std::uint64_t hash :
        {state_hash<1, double>(), state_hash<2, double>(), state_hash<3, double>(), state_hash<3, float>()})
     std::printf("hash of splines %016llx\n", static_cast<unsigned long long>(hash));

@@ -4,9 +4,9 @@
 /// wider support.
 #include "wide_bases.hpp"
 
-#include "both_engines.hpp"
 #include <set>
 #include <vsb/kernels/balance.hpp>
+#include "both_engines.hpp"
 
 using namespace vsb;
 using namespace vsb::test;

@@ -120,15 +120,15 @@ TEMPLATE_TEST_CASE_SIG("sums over particles on a dual cell, from products and fr
       xi.push_back(draw_vector<Dim, T>(random, 0, 1));
       w.push_back(Traits<T>::draw(random, -1, 1));
       add_product<Dim>(sum, w.back(), TensorProduct<Dim, T>::splines(xi.back()));
-      add_monomials<All, Dim>(moments, w.back(),
-                              TensorProduct<Dim, T>::monomials(Powers<Dim, T>(xi.back())));
+      add_monomials<All, Dim>(moments, w.back(), TensorProduct<Dim, T>::monomials(Powers<Dim, T>(xi.back())));
     }
     // Of the derivative along direction j, moments with the highest power of it are not needed.
     Polynomial of_slope[Dim];
     static_for<Dim>([&](auto j) {
       auto needed = moments;
       for (int k = 0; k < needed.size; ++k)
-        if (stencil_digit(k, j) == 2) needed[k] = T(std::numeric_limits<typename Traits<T>::real>::quiet_NaN());
+        if (stencil_digit(k, j) == 2)
+          needed[k] = T(std::numeric_limits<typename Traits<T>::real>::quiet_NaN());
       of_slope[j] = zero;
       add_slope_moments<j, Dim>(of_slope[j], T(typename Traits<T>::real(0.5)), needed);
       nodes_from_quadratic<Dim>(of_slope[j]);
