@@ -82,7 +82,7 @@ struct OccupyDualLanes {
 /// keep them: nodes of cells with particles that none of these has are active too.
 template <int Dim, class Real, class Device>
 struct CountMarkedNodes {
-  MarkLaneNodes<Dim, Real, Device> mark;
+  MarkLaneNodes<1, Dim, Real, Device> mark;
 
   KOKKOS_FUNCTION void operator()(int r, int& count) const {
     const Vector<2, int> at{{r % mark.tiling.node_rows[0], r / mark.tiling.node_rows[0]}};
@@ -142,7 +142,7 @@ template <class Exec, int Dim, class Real, class Device>
 void mark_dual_lanes(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes,
                      const Vector<Dim, int>& last, const Walls<Dim>& walls, const LaneGhosts<Device>& ghosts,
                      LaneBoundary<Dim, Device>& b, bool anew) {
-  mark_nodes(exec, lanes, dual_tiling(lanes, last, walls), with_ghost_cells(last), b, anew, 1);
+  mark_nodes<1>(exec, lanes, dual_tiling(lanes, last, walls), with_ghost_cells(last), b, anew);
   kernel::for_each_image("vsb::mirror_lane_tractions", exec, ghosts,
                          kernel::MirrorLaneTractions<Device>{ghosts, b.tractions});
   load_groups(exec, lanes, b);
@@ -157,8 +157,7 @@ int count_marked_nodes(const Exec& exec, const CellLanes<Dim, Real, Device>& lan
   int count = 0;
   Kokkos::parallel_reduce(
       "vsb::count_marked_nodes", Kokkos::RangePolicy<Exec>(exec, 0, tiling.node_row_count()),
-      kernel::CountMarkedNodes<Dim, Real, Device>{{lanes, b, tiling, with_ghost_cells(last), false, 1}},
-      count);
+      kernel::CountMarkedNodes<Dim, Real, Device>{{lanes, b, tiling, with_ghost_cells(last), false}}, count);
   exec.fence();
   return count;
 }

@@ -51,15 +51,14 @@ struct OccupyLanes {
   }
 };
 
-/// One word of nodes: N1, and the tractions of the nodes where anything changed. Counts loaded nodes.
-template <int Dim, class Real, class Device>
+/// One word of nodes: N1, and the tractions of the nodes where anything changed. reach: of the basis.
+template <int reach, int Dim, class Real, class Device>
 struct MarkLaneNodes {
   CellLanes<Dim, Real, Device> lanes;
   LaneBoundary<Dim, Device> boundary;
   BitRows<Dim> tiling;
   Vector<Dim, int> grid_cells;  ///< of the grid at whose nodes tractions are declared
   bool anew;                    ///< whether or not anything changed
-  int reach;                    ///< of the basis
 
   KOKKOS_FUNCTION void operator()(int r) const {
     const Vector<2, int> at{{r % tiling.node_rows[0], r / tiling.node_rows[0]}};
@@ -205,16 +204,16 @@ bool update_occupied(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes
 
 /// From bits.occupied, which `tiling` describes, to the tractions of nodes. anew: after packing anew, or
 /// where a declaration changed. reach: of the basis.
-template <class Exec, int Dim, class Real, class Device>
+template <int reach, class Exec, int Dim, class Real, class Device>
 void mark_nodes(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes, const BitRows<Dim>& tiling,
-                const Vector<Dim, int>& grid_cells, LaneBoundary<Dim, Device>& b, bool anew, int reach) {
+                const Vector<Dim, int>& grid_cells, LaneBoundary<Dim, Device>& b, bool anew) {
   const Kokkos::RangePolicy<Exec> over_words(exec, 0, tiling.cell_row_count() * tiling.words);
   Kokkos::parallel_for("vsb::find_exterior_cells", over_words,
                        kernel::FindExterior<Dim, Device>{b.bits, tiling});
   Kokkos::parallel_for("vsb::find_boundary_cells", over_words,
                        kernel::FindBoundary<Dim, Device>{b.bits, tiling});
   Kokkos::parallel_for("vsb::mark_lane_nodes", Kokkos::RangePolicy<Exec>(exec, 0, tiling.node_row_count()),
-                       kernel::MarkLaneNodes<Dim, Real, Device>{lanes, b, tiling, grid_cells, anew, reach});
+                       kernel::MarkLaneNodes<reach, Dim, Real, Device>{lanes, b, tiling, grid_cells, anew});
 }
 
 /// From the tractions of nodes to the loads of groups.
@@ -235,7 +234,7 @@ void mark_lanes(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes,
     tiling.first[i] = math::max(0, -lanes.box.first[i]);
     tiling.last[i] = math::min(lanes.box.cells[i], grid_cells[i] - lanes.box.first[i]) - 1;
   }
-  mark_nodes(exec, lanes, tiling, grid_cells, b, anew, 0);
+  mark_nodes<0>(exec, lanes, tiling, grid_cells, b, anew);
   load_groups(exec, lanes, b);
 }
 
