@@ -97,7 +97,7 @@ template <class Field, int Dim, class Real, class Device, class P>
         for_each_block(
             lanes, group,
             [&](const auto& xi) VSB_UNROLLED { return TensorProduct<Dim, P>::monomials(Powers<Dim, P>(xi)); },
-            [&](auto anew, size_t entry, int slots, const auto* products) {
+            [&](auto anew, size_t entry, int slots, auto* products) {
               VirtualStressValue<Dim, P> bar[block_slots];
               for (int s = 0; s < slots; ++s)
                 evaluate(on, group, field, tractions, entry + static_cast<size_t>(s) * P::width, bar[s]);
