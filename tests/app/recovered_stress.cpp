@@ -6,6 +6,7 @@
 #include "app/shapes.hpp"
 #include "run/cell_means.hpp"
 #include "run/comparison.hpp"
+#include "run/simulation.hpp"
 
 using namespace vsb::app;
 using vsb::test::grid_scene;
