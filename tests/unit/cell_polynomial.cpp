@@ -5,44 +5,12 @@
 #include <vsb/physics/multilinear.hpp>
 #include <vsb/views/pack.hpp>
 
-#include "support.hpp"
+#include "lane_by_lane.hpp"
 
 using namespace vsb;
 using namespace vsb::test;
 
 namespace {
-
-/// One lane of a number or of a pack.
-double lane(double x, int) {
-  return x;
-}
-template <class T, int W>
-double lane(Pack<T, W> x, int l) {
-  return static_cast<double>(x[l]);
-}
-template <class T>
-struct Traits {
-  using real = T;
-  static constexpr int width = 1;
-  static T draw(Random& random, double low, double high) { return random.draw<T>(low, high); }
-};
-template <class T, int W>
-struct Traits<Pack<T, W>> {
-  using real = T;
-  static constexpr int width = W;
-  static Pack<T, W> draw(Random& random, double low, double high) {
-    Pack<T, W> p;
-    for (int l = 0; l < W; ++l) p.set(l, random.draw<T>(low, high));
-    return p;
-  }
-};
-
-template <int Dim, class T>
-Vector<Dim, T> draw_vector(Random& random, double low, double high) {
-  Vector<Dim, T> v;
-  for (int i = 0; i < Dim; ++i) v[i] = Traits<T>::draw(random, low, high);
-  return v;
-}
 
 /// The basis functions at lane l of xi, in double.
 template <int Dim>

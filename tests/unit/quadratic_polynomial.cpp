@@ -4,43 +4,12 @@
 #include <vsb/physics/quadratic_polynomial.hpp>
 #include <vsb/views/pack.hpp>
 
-#include "support.hpp"
+#include "lane_by_lane.hpp"
 
 using namespace vsb;
 using namespace vsb::test;
 
 namespace {
-
-double lane(double x, int) {
-  return x;
-}
-template <class T, int W>
-double lane(Pack<T, W> x, int l) {
-  return static_cast<double>(x[l]);
-}
-template <class T>
-struct Traits {
-  using real = T;
-  static constexpr int width = 1;
-  static T draw(Random& random, double low, double high) { return random.draw<T>(low, high); }
-};
-template <class T, int W>
-struct Traits<Pack<T, W>> {
-  using real = T;
-  static constexpr int width = W;
-  static Pack<T, W> draw(Random& random, double low, double high) {
-    Pack<T, W> p;
-    for (int l = 0; l < W; ++l) p.set(l, random.draw<T>(low, high));
-    return p;
-  }
-};
-
-template <int N, class T>
-Vector<N, T> draw_vector(Random& random, double low, double high) {
-  Vector<N, T> v;
-  for (int i = 0; i < N; ++i) v[i] = Traits<T>::draw(random, low, high);
-  return v;
-}
 
 /// The quadratic B-spline at t, in cells from its node, and its derivative.
 double bspline(double t) {
