@@ -123,7 +123,7 @@ KOKKOS_FORCEINLINE_FUNCTION void add_affine_along(const LoadedLanes<Dim, Real, D
   });
 }
 
-/// Calls add(moments, w, xi) for every slot of a group with its volumes.
+/// Moments of the volumes of a group, to which add(moments, V, xi) adds a slot.
 template <int Dim, class Real, class Device, class Add>
 KOKKOS_FORCEINLINE_FUNCTION SecondMoments<Dim, typename Lanes<Real>::Pack> second_moments(
     const CellLanes<Dim, Real, Device>& lanes, const LaneGroup<Dim>& group, const Add& add) {

@@ -28,7 +28,7 @@ struct LaneNodeRows {
     const P both = lower + nodes.load(nodes.upper_sums + column, node);
     return Planes == 2 ? both : both + nodes.load(nodes.middle_sums + column, node);
   }
-  /// Sweeps over dual cells do so themselves.
+  /// Sets sums to zero; for sums of dual cells the sweeps do so themselves.
   KOKKOS_FORCEINLINE_FUNCTION void clear(int column, int node) const {
     if (Planes == 3) return;
     P(Real(0)).store(nodes.at(nodes.lower_sums + column, node));
