@@ -115,7 +115,7 @@ class Ends(ProgramTest):
     def interrupt(self, out, number):
         """Starts a long run, interrupts it, returns its exit code."""
         run = subprocess.Popen([PROGRAM, "run", str(SCENES / "column.toml"), "--out", str(out), "--set",
-                                "time.steps=200000"], stdout=subprocess.PIPE, text=True)
+                                "time.steps=800000"], stdout=subprocess.PIPE, text=True)
         run.stdout.readline()  # the head line: the run has begun
         time.sleep(0.2)
         run.send_signal(number)
@@ -129,10 +129,10 @@ class Ends(ProgramTest):
         self.assertTrue((out / "column.checkpoint").exists())
         with h5py.File(out / "column.checkpoint") as file:
             step = int(file["checkpoint"].attrs["step"][0])
-        self.assertTrue(0 < step < 200000, step)
-        resumed = self.run_scene("column", "--resume", "--set", "time.steps=200000")
+        self.assertTrue(0 < step < 800000, step)
+        resumed = self.run_scene("column", "--resume", "--set", "time.steps=800000")
         self.assertFalse((out / "column.checkpoint").exists())  # there is nothing left to go on with
-        whole = self.run_scene("column", "--set", "time.steps=200000", out="whole")
+        whole = self.run_scene("column", "--set", "time.steps=800000", out="whole")
         self.assertEqual(resumed["steps"], whole["steps"])
         self.assertEqual(resumed["state_hash"], whole["state_hash"])
 
@@ -149,13 +149,13 @@ class Ends(ProgramTest):
         out = self.folder / "column"
         self.assertEqual(self.interrupt(out, signal.SIGINT), 5)
         (out / "column.checkpoint").write_bytes((out / "column.checkpoint").read_bytes()[:700])
-        done = vsb("run", SCENES / "column.toml", "--out", out, "--resume", "--set", "time.steps=200000")
+        done = vsb("run", SCENES / "column.toml", "--out", out, "--resume", "--set", "time.steps=800000")
         self.assertEqual(done.returncode, 4)
         self.assertIn("column.checkpoint", done.stderr)
 
     def test_a_checkpoint_is_not_discarded_without_a_word(self):
         out = self.folder / "column"
-        again = lambda *more: vsb("run", SCENES / "column.toml", "--out", out, "--set", "time.steps=200000", *more)
+        again = lambda *more: vsb("run", SCENES / "column.toml", "--out", out, "--set", "time.steps=800000", *more)
         first = vsb("run", SCENES / "column.toml", "--out", out, "--set", "time.steps=10", "--resume")
         self.assertEqual((first.returncode, first.stderr), (0, f"vsb: no checkpoint in {out}; starting from step 0\n"))
         self.assertEqual(self.interrupt(out, signal.SIGINT), 5)

@@ -295,7 +295,7 @@ axis = { name = "number of steps" }
 [[series]]
 name = "steps"
 sweep = "time.steps"
-case = [{ axis = 300 }, { axis = 100000, expect = { time = { value = 1000.0, tolerance = 1e-12 } } }, { axis = 400 }]
+case = [{ axis = 300 }, { axis = 600000, expect = { time = { value = 6000.0, tolerance = 1e-12 } } }, { axis = 400 }]
 """
 
 
@@ -320,20 +320,20 @@ class GoingOn(StudyTest):
         self.assertEqual(code, 5, output)
         self.assertIn("the same command goes on", output)
         self.assertEqual({row["case"] for row in self.table()}, {"300"})
-        self.assertTrue(self.case(100000, "column.checkpoint").is_file())
-        self.assertFalse(self.case(100000, "summary.json").exists())
+        self.assertTrue(self.case(600000, "column.checkpoint").is_file())
+        self.assertFalse(self.case(600000, "summary.json").exists())
         self.assertFalse(self.case(400, "summary.json").exists())
-        record = tomllib.loads(self.case(100000, "case.toml").read_text())
+        record = tomllib.loads(self.case(600000, "case.toml").read_text())
         self.assertEqual(record["state"], "running")
-        self.assertTrue(0 < record["steps_timed"] < 100000)
+        self.assertTrue(0 < record["steps_timed"] < 600000)
         finished = self.case(300, "summary.json").stat().st_mtime_ns
 
         done, table = self.study(LONG)
         self.assertEqual(self.case(300, "summary.json").stat().st_mtime_ns, finished)
         self.assertEqual(done.stdout.count("done before"), 1)
         # A run from the start would have timed more steps than there are.
-        self.assertFalse(self.case(100000, "column.checkpoint").exists())
-        self.assertEqual(tomllib.loads(self.case(100000, "case.toml").read_text())["steps_timed"], 100000)
+        self.assertFalse(self.case(600000, "column.checkpoint").exists())
+        self.assertEqual(tomllib.loads(self.case(600000, "case.toml").read_text())["steps_timed"], 100000)
 
         _, whole = self.study(LONG, out="whole")
         self.assertEqual(len(whole), 10)
