@@ -333,7 +333,7 @@ class GoingOn(StudyTest):
         self.assertEqual(done.stdout.count("done before"), 1)
         # A run from the start would have timed more steps than there are.
         self.assertFalse(self.case(600000, "column.checkpoint").exists())
-        self.assertEqual(tomllib.loads(self.case(600000, "case.toml").read_text())["steps_timed"], 100000)
+        self.assertEqual(tomllib.loads(self.case(600000, "case.toml").read_text())["steps_timed"], 600000)
 
         _, whole = self.study(LONG, out="whole")
         self.assertEqual(len(whole), 10)
