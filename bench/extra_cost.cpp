@@ -58,6 +58,7 @@ void add_extra_cost(const Size& size, Scatter strategy, Load load) {
                      [&](const auto& field) { step(Exec(), s.state, s.bodies, s.basis, field, s.options); });
         });
         if (!findings.empty()) {
+          ++failed_checks();
           state.SkipWithError(findings.c_str());
           return;
         }

@@ -71,20 +71,36 @@ std::string check_lane_sums(const Column<Dim, Real>& column, const Lane<Dim, Rea
   return findings.text();
 }
 
+/// The sum over all nodes of m dv, with the increments of the step under way.
+template <int Dim, class Real>
+Sum lane_impulse(const Lane<Dim, Real>& s, int i) {
+  const auto& nodes = s.memory.nodes;
+  const auto data = snapshot(nodes.data);
+  Sum impulse;
+  for (size_t I = 0; I < static_cast<size_t>(s.memory.lanes.node_count); ++I) {
+    const auto inverse_mass = static_cast<double>(data(I, static_cast<size_t>(nodes.inverse_mass_column)));
+    if (inverse_mass > 0)
+      impulse.add(static_cast<double>(data(I, static_cast<size_t>(nodes.increment_column + i))) /
+                  inverse_mass);
+  }
+  return impulse;
+}
+
+/// Sets the nodes' sums to zero, as the node kernels of the step leave them.
+template <int Dim, class Real>
+void clear_lane_sums(const Lane<Dim, Real>& s) {
+  const auto& nodes = s.memory.nodes;
+  Kokkos::deep_copy(Kokkos::subview(nodes.data, Kokkos::ALL(), std::make_pair(0, nodes.increment_column)), 0);
+}
+
 /// Particles gain the momentum that the nodes gain, and the nodes of the re-map have it.
 template <int Dim, class Real, class Run>
 std::string check_lane_acceleration(const Lane<Dim, Real>& s, const Run& run) {
   Findings<Real> findings;
   Sum before[Dim], gain[Dim];
-  const auto& nodes = s.memory.nodes;
-  const auto data = snapshot(nodes.data);
   for (int i = 0; i < Dim; ++i) {
     before[i] = lane_momentum(s, i);
-    for (size_t I = 0; I < static_cast<size_t>(s.memory.lanes.node_count); ++I) {
-      const double m = static_cast<double>(data(I, 0)) +
-                       (Dim > 1 ? static_cast<double>(data(I, static_cast<size_t>(nodes.upper_sums))) : 0);
-      gain[i].add(m * static_cast<double>(data(I, static_cast<size_t>(nodes.increment_column + i))));
-    }
+    gain[i] = lane_impulse(s, i);
   }
   run();
   for (int i = 0; i < Dim; ++i) {
@@ -135,6 +151,7 @@ std::string check_lane_motion(const Lane<Dim, Real>& s, const Run& run) {
     return lane_sum(
         s, [i, &lanes](const auto& p, const auto& cell) { return p(lanes.xi_column + i) + cell[i]; });
   };
+  clear_lane_sums(s);
   stretch_nodes(s, g);
   const Sum volumes = volume();
   Sum positions[Dim];

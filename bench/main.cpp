@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// vsb_bench [--threads N] [options of Google Benchmark]: see README.md.
+/// vsb_bench [--threads N] [options of Google Benchmark]: see README.md. Exit code 6 where a result is wrong.
 
 #include "context.hpp"
 #include "registry.hpp"
@@ -62,5 +62,7 @@ int main(int argc, char** argv) {
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   Kokkos::finalize();
-  return 0;
+  if (failed_checks() == 0) return 0;
+  std::fprintf(stderr, "vsb_bench: %d benchmarks found wrong results and were not timed\n", failed_checks());
+  return 6;
 }

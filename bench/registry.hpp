@@ -62,22 +62,45 @@ benchmark::internal::Benchmark* add(const std::string& full_name, const Function
   return works_elsewhere() ? added->UseRealTime() : added;
 }
 
-/// The timed loop: `run` and a fence, unless `findings` says what is wrong.
-template <class Run>
+/// What no time is counted for.
+struct Nothing {
+  void operator()() const {}
+};
+
+/// How many benchmarks were not timed because of what their check found.
+inline int& failed_checks() {
+  static int count = 0;
+  return count;
+}
+
+/// The timed loop: `run` and a fence, unless `findings` says what is wrong. `before` comes before every call
+/// and is not timed.
+template <class Run, class Before = Nothing>
 void time(benchmark::State& state, const std::string& findings, int particles, double bytes_per_particle,
-          const Run& run) {
+          const Run& run, const Before& before = {}) {
   if (!findings.empty()) {
+    ++failed_checks();
     state.SkipWithError(findings.c_str());
     return;
   }
+  constexpr bool apart = !std::is_same_v<Before, Nothing>;
   const Exec exec;
-  const double start = now();
+  double start = now(), seconds = 0;
   for (auto _ : state) {
+    if constexpr (apart) {
+      state.PauseTiming();
+      before();
+      exec.fence();
+      state.ResumeTiming();
+      start = now();
+    }
     run();
     exec.fence();
+    if constexpr (apart) seconds += now() - start;
   }
-  const double seconds = (now() - start) / static_cast<double>(state.iterations());
-  state.counters["ns_per_particle_step"] = 1e9 * seconds / particles;
+  if constexpr (!apart) seconds = now() - start;
+  state.counters["ns_per_particle_step"] =
+      1e9 * seconds / static_cast<double>(state.iterations()) / particles;
   state.counters["bytes_per_particle"] = bytes_per_particle;
 }
 

@@ -20,32 +20,39 @@ KOKKOS_INLINE_FUNCTION SymmetricTensor<Dim, T> strain_increment(const Matrix<Dim
   return e;
 }
 
-/// dt (w sigma - sigma w) with the spin w = skew(L): what the Jaumann rate adds to a stress increment, so
-/// that the stress turns with the material.
+/// sigma + dt (w sigma - sigma w) with the spin w = skew(L): the stress turned with the material over a step,
+/// which is what the Jaumann rate adds to its increment. Component (i, j) gets w_ik sigma_kj + w_jk sigma_ki,
+/// added up by pairs w_ij = -w_ji.
 template <int Dim, class T>
-KOKKOS_FORCEINLINE_FUNCTION SymmetricTensor<Dim, T> jaumann_rotation(const SymmetricTensor<Dim, T>& sigma,
-                                                                     const Matrix<Dim, T>& L, T dt) {
-  auto r = SymmetricTensor<Dim, T>::zero();
-  if constexpr (Dim > 1) {
-    auto A = Matrix<Dim, T>::zero();  // dt w sigma; -dt sigma w is its transpose
-    for (int i = 0; i < Dim; ++i)
+KOKKOS_FORCEINLINE_FUNCTION SymmetricTensor<Dim, T> turned_with_material(const SymmetricTensor<Dim, T>& sigma,
+                                                                         const Matrix<Dim, T>& L, T dt) {
+  auto s = sigma;
+  for (int i = 0; i < Dim; ++i)
+    for (int j = i + 1; j < Dim; ++j) {
+      const T twice = dt * (L(i, j) - L(j, i)), w = T(0.5) * twice;
+      s[i] += twice * sigma(i, j);
+      s[j] -= twice * sigma(i, j);
+      s[symmetric_index(i, j)] += w * (sigma[j] - sigma[i]);
       for (int k = 0; k < Dim; ++k) {
-        if (i == k) continue;
-        const T w = T(0.5) * dt * (L(i, k) - L(k, i));
-        for (int j = 0; j < Dim; ++j) A(i, j) += w * sigma(k, j);
+        if (k == i || k == j) continue;
+        s[symmetric_index(i, k)] += w * sigma(j, k);
+        s[symmetric_index(j, k)] -= w * sigma(i, k);
       }
-    for (int i = 0; i < Dim; ++i)
-      for (int j = i; j < Dim; ++j) r[symmetric_index(i, j)] = A(i, j) + A(j, i);
-  }
-  return r;
+    }
+  return s;
 }
 
 /// I + dt L: the deformation of the step.
 template <int Dim, class T>
 KOKKOS_INLINE_FUNCTION Matrix<Dim, T> deformation_increment(const Matrix<Dim, T>& L, T dt) {
-  auto f = Matrix<Dim, T>::identity();
+  Matrix<Dim, T> f;
   for (int i = 0; i < Dim; ++i)
-    for (int j = 0; j < Dim; ++j) f(i, j) += dt * L(i, j);
+    for (int j = 0; j < Dim; ++j) {
+      if (i == j)
+        f(i, i) = T(1) + dt * L(i, i);
+      else
+        f(i, j) = dt * L(i, j);
+    }
   return f;
 }
 

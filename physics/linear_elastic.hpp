@@ -43,7 +43,7 @@ struct LinearElastic {
   template <int Dim, class T>
   KOKKOS_FORCEINLINE_FUNCTION SymmetricTensor<Dim, T> advance(const SymmetricTensor<Dim, T>& sigma,
                                                               const Matrix<Dim, T>& L, T dt) const {
-    return strained(sigma + jaumann_rotation(sigma, L, dt), L, dt);
+    return strained(turned_with_material(sigma, L, dt), L, dt);
   }
 
   /// Itself; see material.hpp.
@@ -53,9 +53,13 @@ struct LinearElastic {
   template <int Dim, class T>
   KOKKOS_FORCEINLINE_FUNCTION SymmetricTensor<Dim, T> strained(const SymmetricTensor<Dim, T>& sigma,
                                                                const Matrix<Dim, T>& L, T dt) const {
-    auto s = sigma + T(2 * shear_modulus) * strain_increment(L, dt);
-    const T isotropic = T(lambda) * dt * trace(L);
+    const T G_dt = T(shear_modulus) * dt, isotropic = T(lambda) * dt * trace(L);
+    auto s = sigma;
     for (int i = 0; i < 3; ++i) s[i] += isotropic;
+    for (int i = 0; i < Dim; ++i) {
+      s[i] += T(2) * G_dt * L(i, i);
+      for (int j = i + 1; j < Dim; ++j) s[symmetric_index(i, j)] += G_dt * (L(i, j) + L(j, i));
+    }
     return s;
   }
 

@@ -34,8 +34,8 @@ KOKKOS_FORCEINLINE_FUNCTION SymmetricTensor<Dim, T> plastic_strain_in(const Vect
 /// plastic strain of one that has not.
 template <int Dim, int N, class T>
 KOKKOS_FORCEINLINE_FUNCTION void turn_plastic_strain(Vector<N, T>& state, const Matrix<Dim, T>& L, T dt) {
-  const auto turn = jaumann_rotation(plastic_strain_in<Dim>(state), L, dt);
-  for (int c = 0; c < turn.size; ++c) state[c] += turn[c];
+  const auto turned = turned_with_material(plastic_strain_in<Dim>(state), L, dt);
+  for (int c = 0; c < turned.size; ++c) state[c] = turned[c];
 }
 
 /// Takes what a trial stress has too much: sigma = sigma_trial - excess, and the plastic strain grows by C^-1

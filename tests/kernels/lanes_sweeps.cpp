@@ -51,8 +51,7 @@ TEMPLATE_TEST_CASE_SIG("one sweep: bodies against walls", "", ((int Dim), Dim), 
 }
 
 TEMPLATE_TEST_CASE_SIG("particles per cell decide between one sweep and two", "", ((int Dim), Dim), 1, 2, 3) {
-  // In 3D the particles must be too many for caches, too: 27 in each of 8000 cells are, 64 in each of 100 are
-  // not.
+  // In 3D the particles must be too many for caches, too.
   const auto one_sweep = [](int along, int cells) {
     const auto grid = make_grid<Dim, double>({{cells, cells, cells}});
     const auto block = fill_cells<Dim, double>(grid, along, 1., [](const Vector<Dim, int>&) { return true; });
@@ -66,6 +65,10 @@ TEMPLATE_TEST_CASE_SIG("particles per cell decide between one sweep and two", ""
     return one;
   };
   CHECK(!one_sweep(2, 20));
-  CHECK(one_sweep(3, 20));
+  CHECK(one_sweep(3, 20) == (Dim < 3));
   CHECK(one_sweep(4, 5) == (Dim < 3));
+  CellLanes<Dim, double, Device> large;
+  large.particle_count = 64 * 20000;
+  CHECK(one_sweep_is_faster(large, 20000));
+  CHECK(one_sweep_is_faster(large, 50000) == (Dim < 3));
 }
