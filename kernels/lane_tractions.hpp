@@ -4,8 +4,9 @@
 /// where a traction acts its virtual stress (Eqs. 27, 28), sum_p V_p (sbar . grad N_a + fbar N_a).
 ///
 /// A uniform sbar needs only the volume moments sum_p V_p q_k; where a cell has all its nodes loaded or none,
-/// not even these: sigma - sbar takes the place of sigma. An affine sbar needs those with one direction
-/// squared too. Any other field is evaluated at the particles.
+/// not even these: sigma - sbar takes the place of sigma, as it does there of an affine sbar like that of
+/// water. Elsewhere an affine sbar needs those with one direction squared too. Any other field is evaluated
+/// at the particles.
 #pragma once
 
 #include <vsb/kernels/lane_masks.hpp>
@@ -101,22 +102,32 @@ KOKKOS_FORCEINLINE_FUNCTION void add_affine(const LoadedLanes<Dim, Real, Device>
   });
 }
 
-/// The same of fields that vary along direction j alone, and are without shear.
+/// Normal stress a of fields that vary along direction j alone, and are without shear, in the cells of a
+/// group: b + d xi_j. Returns its gradient along j in Pa/m.
+template <int j, class Field, int Dim, class P, class Real, class Device>
+KOKKOS_FORCEINLINE_FUNCTION Real along_cells(const LoadedLanes<Dim, Real, Device>& on,
+                                             const LaneGroup<Dim>& group, const Field& field,
+                                             TractionMask tractions, int a, P& b, P& d) {
+  Real value, slope;
+  field.sum_along(tractions, j, a, value, slope);
+  b = P(value + slope * lower_corner(on, group)[j]);
+  d = P(slope * on.grid.spacing[j]);
+  if constexpr (j == 0) b += d * lane_numbers<P>();
+  return slope;
+}
+
+/// What add_affine does, of such fields.
 template <int j, class Field, int Dim, class P, class Real, class Device>
 KOKKOS_FORCEINLINE_FUNCTION void add_affine_along(const LoadedLanes<Dim, Real, Device>& on,
                                                   const LaneGroup<Dim>& group, const Field& field,
                                                   TractionMask tractions, const SecondMoments<Dim, P>& volume,
                                                   const std::uint64_t* bits,
                                                   CellPolynomial<Dim, P> (&f)[Dim]) {
-  const auto& grid = on.grid;
-  const Real x = lower_corner(on, group)[j];
   static_for<Dim>([&](auto a) VSB_UNROLLED {
-    Real value, slope;
-    field.sum_along(tractions, j, a, value, slope);
-    P b((value + slope * x) * grid.inverse_spacing[a]);
-    const P d(slope * grid.spacing[j] * grid.inverse_spacing[a]);
-    if constexpr (j == 0) b += d * lane_numbers<P>();
-    auto t = gradient_moments_along<a, j, Dim>(b, d, volume);
+    P b, d;
+    const Real slope = along_cells<j>(on, group, field, tractions, a, b, d);
+    const P inverse_spacing(on.grid.inverse_spacing[a]);
+    auto t = gradient_moments_along<a, j, Dim>(P(b * inverse_spacing), P(d * inverse_spacing), volume);
     if constexpr (a == j) static_for<t.size>([&](auto k) VSB_UNROLLED { t[k] += P(slope) * volume.m[k]; });
     nodes_from_moments<Dim>(t);
     add_where<Dim>(bits, t, f[a]);
@@ -195,6 +206,12 @@ KOKKOS_FORCEINLINE_FUNCTION void function_traction(const LoadedLanes<Dim, Real, 
 
 }  // namespace lane_sums
 
+/// Bit l: the cell in lane l is loaded; where all nodes of a cell are or none.
+template <int Dim>
+KOKKOS_FORCEINLINE_FUNCTION std::uint64_t loaded_cells(const LaneGroup<Dim>& group) {
+  return group.loaded[0] & group.loaded[0] >> 1;
+}
+
 /// Everything that a group gives to nodes, all of a cell loaded or none, by a uniform field.
 template <bool Cubic, class Field, int Dim, class Real, class Device>
 [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void sum_whole_group(const LoadedLanes<Dim, Real, Device>& on,
@@ -207,12 +224,45 @@ template <bool Cubic, class Field, int Dim, class Real, class Device>
   add_mass_and_momentum(lanes, group, sums);
   const auto bar = field.at(Vector<Dim, Real>::zero(), group.tractions).stress;
   SymmetricTensor<Dim, P> in_lane;
-  const std::uint64_t cells = group.loaded[0] & group.loaded[0] >> 1;
+  const std::uint64_t cells = loaded_cells(group);
   static_for<in_lane.size>([&](auto c) VSB_UNROLLED { in_lane[c] = keep_lanes(cells, P(bar[c])); });
   CellPolynomial<Dim, P> f[Dim];
   force<Cubic>(
       lanes, group, on.grid.inverse_spacing, [&](size_t entry) { return lanes.load_stress(entry) - in_lane; },
       f);
+  static_for<Dim>([&](auto i) VSB_UNROLLED { sums.add_moments(1 + Dim + i, group, f[i]); });
+}
+
+/// The same by fields that vary along direction j alone, and are without shear: sigma - sbar takes the place
+/// of sigma, and fbar_j adds V fbar_j N_a.
+template <int j, bool Cubic, class Field, int Dim, class Real, class Device>
+[[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void sum_whole_group_along(
+    const LoadedLanes<Dim, Real, Device>& on, const LaneGroup<Dim>& group, const Field& field,
+    StepSums<Dim, Real, Device>& sums) {
+  using namespace lane_sums;
+  using P = typename Lanes<Real>::Pack;
+  const auto& lanes = on.lanes;
+  add_mass_and_momentum(lanes, group, sums);
+  const std::uint64_t cells = loaded_cells(group);
+  P b[Dim], d[Dim], divergence;
+  static_for<Dim>([&](auto a) VSB_UNROLLED {
+    const Real slope = along_cells<j>(on, group, field, group.tractions, a, b[a], d[a]);
+    b[a] = keep_lanes(cells, b[a]);
+    d[a] = keep_lanes(cells, d[a]);
+    if constexpr (a == j) divergence = keep_lanes(cells, P(slope));
+  });
+  CellPolynomial<Dim, P> f[Dim], volume;
+  force<Cubic>(
+      lanes, group, on.grid.inverse_spacing,
+      [&](size_t entry) VSB_UNROLLED {
+        auto sigma = lanes.load_stress(entry);
+        const P xi = lanes.load(lanes.xi_column + j, entry);
+        static_for<Dim>([&](auto a) VSB_UNROLLED { sigma[a] = sigma[a] - b[a] - d[a] * xi; });
+        return sigma;
+      },
+      f);
+  moments_of(lanes, group, lanes.volume_column, volume);
+  static_for<volume.size>([&](auto k) VSB_UNROLLED { f[j][k] += divergence * volume[k]; });
   static_for<Dim>([&](auto i) VSB_UNROLLED { sums.add_moments(1 + Dim + i, group, f[i]); });
 }
 
@@ -257,6 +307,14 @@ KOKKOS_FORCEINLINE_FUNCTION void sum_group_with(const LoadedLanes<Dim, Real, Dev
     if (Field::uniform && group.load == GroupLoad::whole) {
       sum_whole_group<Cubic>(on, group, field, sums);
       return;
+    }
+    if constexpr (Field::affine) {
+      if (field.axis >= 0 && group.load == GroupLoad::whole) {
+        static_for<Dim>([&](auto j) {
+          if (field.axis == j) sum_whole_group_along<j, Cubic>(on, group, field, sums);
+        });
+        return;
+      }
     }
     if (group.load != GroupLoad::none) {
       sum_partly_loaded_group<Cubic>(on, group, field, sums);

@@ -49,7 +49,8 @@ TEMPLATE_TEST_CASE_SIG("free bodies", "", ((int Dim, typename Real), Dim, Real),
     for (const double drift : {0., 1.}) {
       if (sizeof(Real) == 4 && drift > 0) continue;
       BothEngines<Dim, Real> engines({cubic, drift});
-      engines.options.damping = drift > 0 ? Real(0) : Real(0.05);
+      // In single precision the direction in which a node turns around, and damping acts, hangs on round-off.
+      engines.options.damping = drift > 0 || sizeof(Real) == 4 ? Real(0) : Real(0.05);
       engines.options.gravity[Dim - 1] = -engines.amplitude;
       engines.run(elastic<Dim, Real>(), DeterminantVolume{}, [](int) { return NoVirtualStress{}; });
       CAPTURE(cubic, drift, engines.moved);
