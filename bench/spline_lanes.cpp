@@ -21,7 +21,7 @@ struct SplineColumn {
 
   SplineColumn(Size size, Load load) {
     size.void_across = size.void_along = 2;
-    column = make_column<Dim, Real>(size, load);
+    column = make_column<Dim, Real>(size, load, 0);  // along x, as lanes lie
     const auto& grid = column.basis.grid;
     basis.grid = with_ghost_layer(grid);
     basis.walls.fixed[column.axis][0] = static_cast<ComponentMask>((1 << Dim) - 1);
