@@ -24,6 +24,16 @@ namespace vsb {
 
 namespace kernel {
 
+/// Calls work(group, number) for the groups of a layer that hold particles, in order.
+template <int Dim, class Real, class Device, class Work>
+KOKKOS_FORCEINLINE_FUNCTION void for_each_group(const CellLanes<Dim, Real, Device>& lanes, int layer,
+                                                const Work& work) {
+  for (int g = lanes.layer_first(layer); g < lanes.layer_first(layer + 1); ++g) {
+    const auto& group = lanes.groups(g);
+    if (group.slots > 0) work(group, g);
+  }
+}
+
 /// Sweep A.
 template <bool Cubic, class Field, int Dim, class Real, class Device>
 struct SumLanes {
@@ -36,12 +46,10 @@ struct SumLanes {
     if (only.size() > 0 && only(layer) == 0) return;
     StepSums<Dim, Real, Device> sums(nodes);
     sums.begin_anew(on.lanes, layer);
-    for (int g = on.lanes.layer_first(layer); g < on.lanes.layer_first(layer + 1); ++g) {
-      const auto& group = on.lanes.groups(g);
-      if (group.slots == 0) continue;
+    for_each_group(on.lanes, layer, [&](const auto& group, int) {
       sums.begin(group);
       sum_group_with<Cubic>(on, group, virtual_stress, sums);
-    }
+    });
     sums.end();
   }
 };
@@ -74,12 +82,10 @@ struct AccelerateLanes {
 
   KOKKOS_FUNCTION void operator()(int layer) const {
     Momentum sums(nodes);
-    for (int g = lanes.layer_first(layer); g < lanes.layer_first(layer + 1); ++g) {
-      const auto& group = lanes.groups(g);
-      if (group.slots == 0) continue;
+    for_each_group(lanes, layer, [&](const auto& group, int) {
       sums.begin(group);
       accelerate_and_sum(group, sums);
-    }
+    });
     sums.end();
   }
   [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void accelerate_and_sum(const LaneGroup<Dim>& group,
@@ -101,12 +107,10 @@ struct RemapLanes {
 
   KOKKOS_FUNCTION void operator()(int layer) const {
     Momentum sums(nodes);
-    for (int g = lanes.layer_first(layer); g < lanes.layer_first(layer + 1); ++g) {
-      const auto& group = lanes.groups(g);
-      if (group.slots == 0) continue;
+    for_each_group(lanes, layer, [&](const auto& group, int g) {
       sums.begin(group);
       add_gain(g, group, sums);
-    }
+    });
     sums.end();
   }
   [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void add_gain(int g, const LaneGroup<Dim>& group,
@@ -301,8 +305,25 @@ KOKKOS_FUNCTION int few_leavers(const CellLanes<Dim, Real, Device>& lanes, int l
   return slots * lanes.width / 16;
 }
 
-/// Sweep C, and A of the next step. Where many particles leave their cells, another sweep after they arrived
-/// costs less than to add them to the sums one by one: a layer that finds so many does not go on with A.
+/// Sweep C of a layer, by move(group), and A of the next step, by sum(group, number), if wanted. Where many
+/// particles leave their cells, another sweep after they arrived costs less than to add them to the sums one
+/// by one: a layer that finds so many does not go on with A.
+template <int Dim, class Real, class Device, class Move, class Sum>
+KOKKOS_FORCEINLINE_FUNCTION void move_layer(const CellLanes<Dim, Real, Device>& lanes,
+                                            const Leavers<Dim, Real, Device>& leavers, int layer,
+                                            bool and_sum, const Move& move, const Sum& sum) {
+  auto& lost = leavers.lost(layer);
+  leavers.count(layer) = lost = 0;
+  const int few = and_sum ? few_leavers(lanes, layer) : -1;
+  for_each_group(lanes, layer, [&](const auto& group, int g) {
+    const bool and_sum_group = lost <= few;
+    move(group);
+    if (and_sum_group) sum(group, g);
+  });
+  leavers.many(layer) = lost > few;
+}
+
+/// Sweep C, and A of the next step.
 template <bool Cubic, class Field, class Material, class Volume, int Dim, class Real, class Device>
 struct MoveLanes {
   LoadedLanes<Dim, Real, Device> on;
@@ -311,23 +332,14 @@ struct MoveLanes {
   bool and_sum;  ///< whether A follows at once
 
   KOKKOS_FUNCTION void operator()(int layer) const {
-    auto& lost = move.leavers.lost(layer);
-    move.leavers.count(layer) = lost = 0;
-    int g = on.lanes.layer_first(layer);
-    const int end = on.lanes.layer_first(layer + 1), few = and_sum ? few_leavers(on.lanes, layer) : -1;
-    if (and_sum) {
-      StepSums<Dim, Real, Device> sums(move.nodes);
-      for (; g < end && lost <= few; ++g) {
-        const auto& group = on.lanes.groups(g);
-        if (group.slots == 0) continue;
-        accelerate_and_move(group, layer);
-        sums.begin(group);
-        sum_group_with<Cubic>(on, group, virtual_stress, sums);
-      }
-      sums.end();
-    }
-    for (; g < end; ++g) accelerate_and_move(on.lanes.groups(g), layer);
-    move.leavers.many(layer) = lost > few;
+    StepSums<Dim, Real, Device> sums(move.nodes);
+    move_layer(
+        on.lanes, move.leavers, layer, and_sum, [&](const auto& group) { accelerate_and_move(group, layer); },
+        [&](const auto& group, int) {
+          sums.begin(group);
+          sum_group_with<Cubic>(on, group, virtual_stress, sums);
+        });
+    sums.end();
   }
   KOKKOS_FORCEINLINE_FUNCTION void accelerate_and_move(const LaneGroup<Dim>& group, int layer) const {
     if (on.lanes.one_sweep()) accelerate_apart(group);

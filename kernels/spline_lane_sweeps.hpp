@@ -23,12 +23,10 @@ struct SumSplineLanes {
   KOKKOS_FUNCTION void operator()(int layer) const {
     if (only.size() > 0 && only(layer) == 0) return;
     SplineStepSums<Dim, Real, Device> sums(on.lanes, nodes, layer);
-    for (int g = on.lanes.layer_first(layer); g < on.lanes.layer_first(layer + 1); ++g) {
-      const auto& group = on.lanes.groups(g);
-      if (group.slots == 0) continue;
+    for_each_group(on.lanes, layer, [&](const auto& group, int g) {
       sums.begin(group, on.lanes.stencils(g));
       sum_spline_group(on, group, virtual_stress, sums);
-    }
+    });
     sums.end();
   }
 };
@@ -43,13 +41,11 @@ struct AccelerateSplineLanes {
 
   KOKKOS_FUNCTION void operator()(int layer) const {
     Momentum sums(lanes, nodes, layer);
-    for (int g = lanes.layer_first(layer); g < lanes.layer_first(layer + 1); ++g) {
-      const auto& group = lanes.groups(g);
-      if (group.slots == 0) continue;
+    for_each_group(lanes, layer, [&](const auto& group, int g) {
       sums.begin(group, lanes.stencils(g));
       accelerate(group);
       add_momentum(group, sums);
-    }
+    });
     sums.end();
   }
   /// v_p <- v_p + dt sum_I N_Ip a_I.
@@ -160,23 +156,16 @@ struct MoveSplineLanes {
   bool and_sum;  ///< whether A follows at once
 
   KOKKOS_FUNCTION void operator()(int layer) const {
-    auto& lost = move.leavers.lost(layer);
-    move.leavers.count(layer) = lost = move.crossed(layer) = 0;
-    int g = on.lanes.layer_first(layer);
-    const int end = on.lanes.layer_first(layer + 1), few = and_sum ? few_leavers(on.lanes, layer) : -1;
-    if (and_sum) {
-      SplineStepSums<Dim, Real, Device> sums(on.lanes, move.nodes, layer);
-      for (; g < end && lost <= few; ++g) {
-        const auto& group = on.lanes.groups(g);
-        if (group.slots == 0) continue;
-        move(group, layer);
-        sums.begin(group, on.lanes.stencils(g));
-        sum_spline_group(on, group, virtual_stress, sums);
-      }
-      sums.end();
-    }
-    for (; g < end; ++g) move(on.lanes.groups(g), layer);
-    move.leavers.many(layer) = lost > few;
+    move.crossed(layer) = 0;
+    const auto move_group = [&](const auto& group) { move(group, layer); };
+    if (!and_sum)
+      return move_layer(on.lanes, move.leavers, layer, false, move_group, [](const auto&, int) {});
+    SplineStepSums<Dim, Real, Device> sums(on.lanes, move.nodes, layer);
+    move_layer(on.lanes, move.leavers, layer, true, move_group, [&](const auto& group, int g) {
+      sums.begin(group, on.lanes.stencils(g));
+      sum_spline_group(on, group, virtual_stress, sums);
+    });
+    sums.end();
   }
 };
 

@@ -2,8 +2,7 @@
 /// \file
 /// 100 steps on cell lanes are 100 steps of the particle kernels: virtual stresses that vary in space, with
 /// their divergence.
-#include "both_engines.hpp"
-#include "four_fields.hpp"
+#include "engine_scenes.hpp"
 
 using namespace vsb;
 using namespace vsb::test;
@@ -27,30 +26,7 @@ struct Singular {
 TEMPLATE_TEST_CASE_SIG("fields of all kinds, other ones from node to node", "",
                        ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (3, double),
                        (2, float)) {
-  for (const bool mixed : {false, true}) {
-    BothEngines<Dim, Real> engines({!mixed, sizeof(Real) == 4 ? 0. : 1.5});
-    const auto f = four_fields<Dim, Real>(engines.basis.grid, engines.amplitude);
-    if (mixed) {
-      engines.declare([](const Vector<Dim, int>& ijk) {
-        TractionMask mask = 0;
-        for (int i = 0; i < Dim; ++i) mask |= 1u << ((ijk[i] + i) / 2 % 5);  // bit 4: no field has it
-        return mask;
-      });
-      engines.conservative = 4;
-    } else {
-      engines.declare_everywhere(15);
-    }
-    engines.run(elastic<Dim, Real>(), DeterminantVolume{}, [&](int n) {
-      auto now = f;
-      for (int k = 0; k < 4; ++k) now.factor[k] *= static_cast<Real>(0.01 * n);
-      return now;
-    });
-    CAPTURE(mixed, engines.moved);
-    check_same(engines);
-    engines.check_boundary();
-    CHECK(engines.load_seen[static_cast<int>(GroupLoad::mixed)] == mixed);
-    CHECK((Dim == 1 || mixed || engines.load_seen[static_cast<int>(GroupLoad::whole)]));
-  }
+  check_fields_of_all_kinds<Dim, Real, BothEngines<Dim, Real>>();
 }
 
 TEMPLATE_TEST_CASE_SIG("affine fields, by the volume's second moments", "",

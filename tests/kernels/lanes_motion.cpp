@@ -78,6 +78,24 @@ struct FlyingBlock {
   }
 };
 
+/// After so many steps of a flight every particle is where it must be, with its mass.
+template <int Dim, class Real, template <int, class, class> class StateOf>
+void check_arrival(const FlyingBlock<Dim, Real, StateOf>& flight, const Vector<3, double>& step, int steps) {
+  const auto before = read(flight.block), after = read(flight.after);
+  int wrong = 0;
+  double error = 0;
+  for (int k = 0; k < before.count(); ++k) {
+    wrong += after.mass(k) != before.mass(k);
+    for (int i = 0; i < Dim; ++i)
+      error = std::max(error, std::abs(static_cast<double>((after.position(k, i) - before.position(k, i)) /
+                                                           flight.grid.spacing[i]) -
+                                       steps * step[i]));
+  }
+  CHECK(wrong == 0);
+  // A place in a cell, below 1, is rounded once a step, and a position in the grid once.
+  CHECK(error < (steps + 4 * flight.grid.cells[0]) * epsilon<Real>);
+}
+
 template <int Dim, class Real>
 double momentum(const ParticleBlock<Dim, Real, Device>& block, int i) {
   const auto p = read(block);
@@ -142,19 +160,7 @@ TEMPLATE_TEST_CASE_SIG("a block flies a hundred cells in a thousand steps", "",
       CHECK(flight.s.memory.lanes.node_count <= more_nodes * nodes);
     }
     CHECK(flight.s.repacked > 5);
-    const auto before = read(flight.block), after = read(flight.after);
-    int wrong = 0;
-    double error = 0;
-    for (int k = 0; k < before.count(); ++k) {
-      wrong += after.mass(k) != before.mass(k);
-      for (int i = 0; i < Dim; ++i)
-        error = std::max(error, std::abs(static_cast<double>((after.position(k, i) - before.position(k, i)) /
-                                                             flight.grid.spacing[i]) -
-                                         1000 * step[i]));
-    }
-    CHECK(wrong == 0);
-    // A place in a cell, below 1, is rounded a thousand times, and a position in the grid once.
-    CHECK(error < (1000 + 4 * 240) * epsilon<Real>);
+    check_arrival(flight, step, 1000);
   }
 }
 
@@ -223,19 +229,7 @@ TEMPLATE_TEST_CASE_SIG("splines: a block flies thirty cells", "", ((int Dim, typ
       CHECK(all_there<Dim, Real>(flight.s.memory.lanes));
     }
     CHECK(flight.s.repacked > 0);
-    const auto before = read(flight.block), after = read(flight.after);
-    int wrong = 0;
-    double error = 0;
-    for (int k = 0; k < before.count(); ++k) {
-      wrong += after.mass(k) != before.mass(k);
-      for (int i = 0; i < Dim; ++i)
-        error = std::max(error, std::abs(static_cast<double>((after.position(k, i) - before.position(k, i)) /
-                                                             flight.grid.spacing[i]) -
-                                         300 * step[i]));
-    }
-    CHECK(wrong == 0);
-    // A place in a cell, below 1, is rounded three hundred times, and a position in the grid once.
-    CHECK(error < (300 + 4 * 90) * epsilon<Real>);
+    check_arrival(flight, step, 300);
   }
 }
 
