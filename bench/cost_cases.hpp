@@ -20,7 +20,7 @@ struct CostCase {
   PaperRow row;
 };
 
-/// The sizes of a case: paper, 80k, 640k, block; none for an unknown name.
+/// The sizes of a case: paper, 80k, 640k, block, large; none for an unknown name.
 inline std::vector<CostCase> cost_cases(const std::string& name) {
   // Table 3: the mesh is 12 m long; beside the column there is void here, so that its sides can be loaded
   // too.
@@ -32,6 +32,7 @@ inline std::vector<CostCase> cost_cases(const std::string& name) {
   if (name == "80k") return {{"80k_ppc8", {"80k_ppc8", 10, 100, 2}, false, {}}};
   if (name == "640k") return {{"640k_ppc8", {"640k_ppc8", 20, 200, 2}, false, {}}};
   if (name == "block") return {{"block_ppc8", {"block_ppc8", 64, 64, 2}, false, {}}};
+  if (name == "large") return {{"3.4m_ppc125", {"3.4m_ppc125", 15, 120, 5}, false, {}}};
   return {};
 }
 

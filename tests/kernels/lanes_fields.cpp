@@ -66,43 +66,58 @@ TEMPLATE_TEST_CASE_SIG("affine fields, by the volume's second moments", "",
   }
 }
 
+/// Two fields that vary along `axis` alone, and are without shear.
+template <int Dim, class Real>
+AffineVirtualStress<Dim, Real> fields_along(int axis, Real amplitude) {
+  AffineVirtualStress<Dim, Real> f;
+  f.count = 2;
+  for (int k = 0; k < 2; ++k) {
+    f.factor[k] = Real(1);
+    f.field[k].value = SymmetricTensor<Dim, Real>::zero();
+    for (auto& g : f.field[k].gradient) g = SymmetricTensor<Dim, Real>::zero();
+    for (int c = 0; c < 3; ++c) {
+      f.field[k].value[c] = amplitude * static_cast<Real>(0.3 * (c + 1 - 2 * k));
+      f.field[k].gradient[axis][c] = amplitude * static_cast<Real>(0.2 * (2 - c + k));
+    }
+  }
+  f.find_axis();
+  return f;
+}
+
 TEMPLATE_TEST_CASE_SIG("affine fields without shear that vary along one direction", "",
                        ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (3, double),
                        (3, float)) {
+  for (const bool mixed : {false, true})
+    for (int axis = 0; axis < Dim; ++axis) {
+      BothEngines<Dim, Real> engines({axis % 2 == 0, sizeof(Real) == 4 ? 0. : 1.5});
+      const auto f = fields_along<Dim, Real>(axis, engines.amplitude);
+      CHECK(f.axis == axis);
+      if (mixed)
+        engines.declare([](const Vector<Dim, int>& ijk) { return TractionMask(1 + ijk[0] % 3); });
+      else
+        engines.declare_everywhere(3);
+      engines.run(elastic<Dim, Real>(), DeterminantVolume{}, [&](int n) {
+        auto now = f;
+        now.factor[1] = static_cast<Real>(0.01 * n);
+        return now;
+      });
+      CAPTURE(mixed, axis, engines.moved);
+      check_same(engines);
+      CHECK(engines.load_seen[static_cast<int>(GroupLoad::mixed)] == mixed);
+      CHECK((Dim == 1 || engines.load_seen[static_cast<int>(GroupLoad::whole)] == !mixed));
+    }
+}
+
+TEMPLATE_TEST_CASE_SIG("fields with shear, or that vary along two directions", "", ((int Dim), Dim), 2, 3) {
   for (int axis = 0; axis < Dim; ++axis) {
-    BothEngines<Dim, Real> engines({axis % 2 == 0, sizeof(Real) == 4 ? 0. : 1.5});
-    const auto amplitude = static_cast<Real>(engines.amplitude);
-    AffineVirtualStress<Dim, Real> f;
-    f.count = 2;
-    for (int k = 0; k < 2; ++k) {
-      f.factor[k] = Real(1);
-      f.field[k].value = SymmetricTensor<Dim, Real>::zero();
-      for (auto& g : f.field[k].gradient) g = SymmetricTensor<Dim, Real>::zero();
-      for (int c = 0; c < 3; ++c) {
-        f.field[k].value[c] = amplitude * static_cast<Real>(0.3 * (c + 1 - 2 * k));
-        f.field[k].gradient[axis][c] = amplitude * static_cast<Real>(0.2 * (2 - c + k));
-      }
-    }
-    f.find_axis();
-    CHECK(f.axis == axis);
-    engines.declare([](const Vector<Dim, int>& ijk) { return TractionMask(1 + ijk[0] % 3); });
-    engines.run(elastic<Dim, Real>(), DeterminantVolume{}, [&](int n) {
-      auto now = f;
-      now.factor[1] = static_cast<Real>(0.01 * n);
-      return now;
-    });
-    CAPTURE(axis, engines.moved);
-    check_same(engines);
-    if (Dim > 1) {
-      auto sheared = f;
-      sheared.field[1].value[3] = Real(1);
-      sheared.find_axis();
-      CHECK(sheared.axis == -1);
-      auto varies_twice = f;
-      varies_twice.field[0].gradient[(axis + 1) % Dim][0] = Real(1);
-      varies_twice.find_axis();
-      CHECK(varies_twice.axis == -1);
-    }
+    const auto f = fields_along<Dim, double>(axis, 1.);
+    auto sheared = f, varies_twice = f;
+    sheared.field[1].value[3] = 1;
+    sheared.find_axis();
+    CHECK(sheared.axis == -1);
+    varies_twice.field[0].gradient[(axis + 1) % Dim][0] = 1;
+    varies_twice.find_axis();
+    CHECK(varies_twice.axis == -1);
   }
 }
 
