@@ -89,7 +89,7 @@ TEMPLATE_TEST_CASE_SIG("affine fields without shear that vary along one directio
                        (3, float)) {
   for (const bool mixed : {false, true})
     for (int axis = 0; axis < Dim; ++axis) {
-      BothEngines<Dim, Real> engines({axis % 2 == 0, sizeof(Real) == 4 ? 0. : 1.5});
+      BothEngines<Dim, Real> engines({axis % 2 == 0, sizeof(Real) == 4 ? 0. : mixed ? 1.5 : 0.5});
       const auto f = fields_along<Dim, Real>(axis, engines.amplitude);
       CHECK(f.axis == axis);
       if (mixed)
