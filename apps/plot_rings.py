@@ -47,7 +47,7 @@ def read_hoop_stress(directory):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("picture", type=pathlib.Path)
     parser.add_argument("runs", nargs="+", metavar="TITLE=DIRECTORY")
     parser.add_argument("--pressure", type=float, default=1e5, help="Pa")

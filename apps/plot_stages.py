@@ -100,7 +100,7 @@ def animate(run, highest):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("directory")
     parser.add_argument("--animation", action="store_true", help="write NAME_stages.gif, of all frames")
     parser.add_argument("--highest", type=float, default=0.006, help="strain at the end of the colours (default: %(default)s)")

@@ -71,11 +71,16 @@ void Results::begin(Series& series, long long resumed_step) {
       fs::remove(file, error);
   }
   fs::remove(path(series.stem + ".hdf.series"), error);
+  if (!series.frames.empty()) write_index(series);
 }
 
 void Results::add_to_index(Series& series, const std::string& file, double time) {
   const auto same = [&](const auto& frame) { return frame.first == file; };
   if (std::none_of(series.frames.begin(), series.frames.end(), same)) series.frames.emplace_back(file, time);
+  write_index(series);
+}
+
+void Results::write_index(const Series& series) const {
   std::string json = "{\n  \"file-series-version\" : \"1.0\",\n  \"files\" : [\n";
   for (size_t i = 0; i < series.frames.size(); ++i)
     json += fmt::format("    {{ \"name\" : \"{}\", \"time\" : {} }}{}\n", series.frames[i].first,

@@ -51,6 +51,7 @@ class Results {
   std::string checkpoint_path() const { return path(scene_.name + ".checkpoint"); }
   void begin(Series& series, long long resumed_step);
   void add_to_index(Series& series, const std::string& file, double time);
+  void write_index(const Series& series) const;
 
   std::string directory_;
   const Scene& scene_;

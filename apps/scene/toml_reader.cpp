@@ -141,7 +141,7 @@ std::string ResolvedTable::toml(const std::string& prefix) const {
 }
 
 TableReader::TableReader(const toml::table& table, std::string path, ResolvedTable& resolved)
-    : table_(&table), path_(std::move(path)), resolved_(&resolved) {}
+    : table_(&table), place_(&table), path_(std::move(path)), resolved_(&resolved) {}
 
 std::string TableReader::name(const std::string& key) const {
   return path_.empty() ? key : path_ + "." + key;
@@ -169,9 +169,10 @@ void TableReader::fail(const toml::node& at, const std::string& key, const std::
 }
 
 void TableReader::missing(const std::string& key, const std::string& what) const {
-  const bool written = static_cast<bool>(table_->source().begin);
-  throw SceneError(fmt::format("{}: {} is missing: {}", written ? location(*table_) : *table_->source().path,
-                               name(key), what));
+  const auto& source = place_->source();
+  const bool written = static_cast<bool>(source.begin) || !source.path;
+  throw SceneError(
+      fmt::format("{}: {} is missing: {}", written ? location(*place_) : *source.path, name(key), what));
 }
 
 void TableReader::record(const std::string& key, const std::string& text, const std::string& comment) {
@@ -351,7 +352,9 @@ TableReader TableReader::table(const std::string& key) {
   const auto* node = find(key);
   if (node && !node->is_table()) fail(*node, key, "must be a table");
   resolved_->children.push_back({key_text(key), false, std::make_unique<ResolvedTable>()});
-  return TableReader(node ? *node->as_table() : empty, name(key), *resolved_->children.back().table);
+  TableReader reader(node ? *node->as_table() : empty, name(key), *resolved_->children.back().table);
+  if (!node) reader.place_ = place_;
+  return reader;
 }
 
 std::vector<TableReader> TableReader::tables(const std::string& key) {

@@ -121,6 +121,7 @@ class TableReader {
   const toml::node* find(const std::string& key);
 
   const toml::table* table_;
+  const toml::table* place_;  ///< where its keys would be: itself, or the nearest table that is written
   std::string path_;
   ResolvedTable* resolved_;
   std::vector<std::string> allowed_;  ///< of allow_only; empty: not called

@@ -71,6 +71,20 @@ class BadScenes(ProgramTest):
     def test_6_missing_key(self):
         self.refuse(self.changed("density = 1000.0\n", ""), "body[0].density is missing", "> 0")
 
+    def test_6_missing_tables(self):
+        # Whatever is left out is named, and the file with it; what is allowed to be left out leaves a good scene.
+        lines = GOOD.splitlines(keepends=True)
+        for number, left_out in enumerate(lines):
+            if not left_out.strip():
+                continue
+            done = vsb("check", self.write("".join(lines[:number] + lines[number + 1:])))
+            self.assertIn(done.returncode, (0, 2), left_out + done.stderr)
+            if done.returncode == 2:
+                self.assertIn("scene.toml", done.stderr, left_out)
+        message = self.refuse(self.changed("material = { youngs_modulus = 1e6, poisson_ratio = 0.3 }\n", ""),
+                              "body[0].material.youngs_modulus is missing")
+        self.assertRegex(message, r"scene\.toml:4:\d+: ")  # where the body begins
+
     def test_7_not_toml(self):
         self.refuse(self.changed("steps = 10", "steps = = 10"), "scene.toml:16:")
 

@@ -112,10 +112,10 @@ class Frames(ProgramTest):
 
 
 class Ends(ProgramTest):
-    def interrupt(self, out, number):
-        """Starts a long run, interrupts it, returns its exit code."""
+    def interrupt(self, out, number, *arguments):
+        """Starts a long run, or goes on with it, interrupts it, returns its exit code."""
         run = subprocess.Popen([PROGRAM, "run", str(SCENES / "column.toml"), "--out", str(out), "--set",
-                                "time.steps=800000"], stdout=subprocess.PIPE, text=True)
+                                "time.steps=800000", *arguments], stdout=subprocess.PIPE, text=True)
         run.stdout.readline()  # the head line: the run has begun
         time.sleep(0.2)
         run.send_signal(number)
@@ -138,6 +138,13 @@ class Ends(ProgramTest):
 
     def test_terminate_does_the_same(self):
         self.assertEqual(self.interrupt(self.folder / "column", signal.SIGTERM), 5)
+
+    def test_the_index_of_the_frames_outlives_a_second_interrupt(self):
+        out = self.folder / "column"
+        self.assertEqual(self.interrupt(out, signal.SIGINT), 5)
+        self.assertEqual(len(frames(out)), 1)
+        self.assertEqual(self.interrupt(out, signal.SIGINT, "--resume"), 5)
+        self.assertEqual(len(frames(out)), 1)
 
     def test_resuming_another_scene_is_refused(self):
         self.assertEqual(self.interrupt(self.folder / "column", signal.SIGINT), 5)
