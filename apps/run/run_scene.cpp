@@ -153,17 +153,6 @@ RunResult run(const Scene& scene, const RunOptions& options) {
       figures.seconds += seconds_since(begin);
       const long long step = simulation->step();
       if (step % health_interval == 0 || interrupt_requested()) simulation->check_health();
-      if (interrupt_requested()) {
-        progress.finish();
-        write_checkpoint();
-        if (!options.progress_only) {
-          fmt::print("interrupted at step {}; the same command with --resume (and the same --set) goes on\n",
-                     step);
-        }
-        figures.steps = step;
-        figures.steps_timed = step - first_step;
-        return {exit_interrupted, figures};
-      }
       bool failed = false;
       if (criterion && step % criterion->check_every == 0) {
         const bool constant_loads = simulation->load_time() >= settled;
@@ -191,6 +180,18 @@ RunResult run(const Scene& scene, const RunOptions& options) {
                         criterion.has_value());
       done = found_static || failed || step >= last_step();
       if (done && stages) done = end_stage();
+      // What is due at this step has been done by now: the run that goes on begins with the next one.
+      if (!done && interrupt_requested()) {
+        progress.finish();
+        write_checkpoint();
+        if (!options.progress_only) {
+          fmt::print("interrupted at step {}; the same command with --resume (and the same --set) goes on\n",
+                     step);
+        }
+        figures.steps = step;
+        figures.steps_timed = step - first_step;
+        return {exit_interrupted, figures};
+      }
     }
     simulation->check_health();
   } catch (const Diverged& error) {
