@@ -13,6 +13,7 @@
 
 #include <vsb/kernels/ordered_sum.hpp>
 #include <vsb/kernels/step.hpp>
+#include <vsb/physics/explicit_dynamics.hpp>
 
 namespace vsb {
 
@@ -46,9 +47,9 @@ KOKKOS_FUNCTION void add_node_balance(const Vector<Dim, Real>& place, ComponentM
   for (int i = 0; i < Dim; ++i) {
     const double f = force[i], g = bare[i], p = momentum[i];
     const bool fixed = fixed_components >> i & 1;
-    if (!fixed && m > 0) sum[0] += f * f;
+    if (!fixed && has_mass(m)) sum[0] += f * f;
     sum[1] += g * g;
-    if (!fixed && m > 0) sum[2] += 0.5 * p * p / m;
+    if (!fixed && has_mass(m)) sum[2] += 0.5 * p * p / m;
     if (!fixed) traction[i] = f - g;
     x[i] = place[i];
     sum[3 + i] += traction[i];

@@ -8,6 +8,7 @@
 
 #include <vsb/kernels/locate_particles.hpp>
 #include <vsb/kernels/number_lanes.hpp>
+#include <vsb/physics/multilinear.hpp>
 
 namespace vsb {
 
@@ -63,8 +64,9 @@ struct PackColumn {
       Real value = p < 0 ? Real(0) : of_particle(p);
       if (coordinate)
         value = p < 0 ? Real(0.5)
-                      : grid.in_cells(value, column) -
-                            static_cast<Real>(lanes.cell(group, static_cast<int>(e % lanes.width))[column]);
+                      : off_the_faces(
+                            grid.in_cells(value, column) -
+                            static_cast<Real>(lanes.cell(group, static_cast<int>(e % lanes.width))[column]));
       *lanes.at(column, e) = value;
     }
   }

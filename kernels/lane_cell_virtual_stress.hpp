@@ -43,7 +43,7 @@ struct AddOriginalStress {
     CellPolynomial<Dim, P> f[Dim];
     static_for<Dim>([&](auto i) VSB_UNROLLED { set_zero<Dim>(f[i]); });
     [[maybe_unused]] CellPolynomial<Dim, P> volume;
-    if constexpr (Field::uniform) moments_of(on.lanes, group, on.lanes.volume_column, volume);
+    if constexpr (Field::uniform) volume_moments(on.lanes, group, volume);
     for_each_mask(on, group, [&](TractionMask tractions, const std::uint64_t* loaded) {
       const TractionMask acting = tractions & original;
       if (acting == 0) return;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// What the particles of a group of cell lanes give to its nodes (Eqs. 10, 11, 27, 28), as moments on the
-/// cells (physics/cell_polynomial.hpp):
-///   mass        sum_p m_p q_k,
-///   momentum    sum_p m_p v_p q_k,
-///   force       sum_p -V_p sigma_p . grad q_k;
+/// What the particles of a group of cell lanes give to its nodes (Eqs. 10, 11, 27, 28):
+///   mass        sum_p m_p N_a,
+///   momentum    sum_p m_p v_p N_a,
+///   force       sum_p -V_p sigma_p . grad N_a, from the moments sum_p -V_p sigma_p . grad q_k
+///               (physics/cell_polynomial.hpp);
 /// the virtual stress at loaded nodes is added by kernels/lane_tractions.hpp. Gravity is left to the nodes:
 /// sum_p N_a m_p g = m_a g.
 ///
@@ -23,14 +23,22 @@ KOKKOS_FORCEINLINE_FUNCTION void set_zero(CellPolynomial<Dim, P>& m) {
   static_for<(1 << Dim)>([&](auto k) VSB_UNROLLED { m[k] = P(0); });
 }
 
-/// The moments of column `weight`: mass or volume.
+/// The moments of volume.
 template <int Dim, class Real, class Device, class P>
-KOKKOS_FORCEINLINE_FUNCTION void moments_of(const CellLanes<Dim, Real, Device>& lanes,
-                                            const LaneGroup<Dim>& group, int weight,
-                                            CellPolynomial<Dim, P>& m) {
+KOKKOS_FORCEINLINE_FUNCTION void volume_moments(const CellLanes<Dim, Real, Device>& lanes,
+                                                const LaneGroup<Dim>& group, CellPolynomial<Dim, P>& m) {
   set_zero<Dim>(m);
   for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width)
-    add_moments<Dim>(m, lanes.load(weight, entry), lanes.load_xi(entry));
+    add_moments<Dim>(m, lanes.load(lanes.volume_column, entry), lanes.load_xi(entry));
+}
+
+/// The masses at the nodes.
+template <int Dim, class Real, class Device, class P>
+KOKKOS_FORCEINLINE_FUNCTION void mass(const CellLanes<Dim, Real, Device>& lanes, const LaneGroup<Dim>& group,
+                                      CellPolynomial<Dim, P>& m) {
+  set_zero<Dim>(m);
+  for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width)
+    CornerFunctions<Dim, P>(lanes.load_xi(entry)).add(m, lanes.load(lanes.mass_column, entry));
 }
 
 /// Stores the mass matrices of a group's cells; m are the masses at their nodes.
@@ -49,17 +57,16 @@ template <int Dim, class Real, class Device, class P>
   m = times<Dim>(M, one);
 }
 
-/// The moments of momentum.
+/// The momenta at the nodes.
 template <int Dim, class Real, class Device, class P>
 KOKKOS_FORCEINLINE_FUNCTION void momentum(const CellLanes<Dim, Real, Device>& lanes,
                                           const LaneGroup<Dim>& group, CellPolynomial<Dim, P> (&p)[Dim]) {
   static_for<Dim>([&](auto i) VSB_UNROLLED { set_zero<Dim>(p[i]); });
   for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
-    const auto q = monomials<Dim>(lanes.load_xi(entry));
+    const CornerFunctions<Dim, P> N(lanes.load_xi(entry));
     const P m = lanes.load(lanes.mass_column, entry);
-    static_for<Dim>([&](auto i) VSB_UNROLLED {
-      add_moments_of<Dim>(p[i], P(m * lanes.load(lanes.velocity_column + i, entry)), q);
-    });
+    static_for<Dim>([&](auto i)
+                        VSB_UNROLLED { N.add(p[i], P(m * lanes.load(lanes.velocity_column + i, entry))); });
   }
 }
 
@@ -102,15 +109,13 @@ KOKKOS_FORCEINLINE_FUNCTION void add_mass_and_momentum(const CellLanes<Dim, Real
                                                        const LaneGroup<Dim>& group,
                                                        StepSums<Dim, Real, Device>& sums) {
   CellPolynomial<Dim, typename Lanes<Real>::Pack> m, p[Dim];
-  if (lanes.one_sweep()) {
+  if (lanes.one_sweep())
     mass_matrices(lanes, group, m);
-    sums.add(0, group, m);
-  } else {
-    moments_of(lanes, group, lanes.mass_column, m);
-    sums.add_moments(0, group, m);
-  }
+  else
+    mass(lanes, group, m);
+  sums.add(0, group, m);
   momentum(lanes, group, p);
-  static_for<Dim>([&](auto i) VSB_UNROLLED { sums.add_moments(1 + i, group, p[i]); });
+  static_for<Dim>([&](auto i) VSB_UNROLLED { sums.add(1 + i, group, p[i]); });
 }
 
 }  // namespace lane_sums

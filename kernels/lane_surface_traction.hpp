@@ -2,8 +2,7 @@
 /// \file
 /// Tractions on surface points beside cell lanes (Eqs. 12, 13; see kernels/surface_traction.hpp):
 ///   f_I <- f_I + sum_b N_I(x_b) sbar(x_b) a_b,   a_b <- cof(I + dt L) a_b,
-/// cell by cell: the points of a cell share its polynomials of dt v and dt v*, and their forces are summed up
-/// as moments.
+/// cell by cell: the points of a cell share its nodal values of dt v and its polynomials of dt v*.
 ///
 /// Reads the increments that the nodes bring to the particles; writes the force of the nodes' sums, each
 /// layer its own, and places and areas of the points.
@@ -118,13 +117,13 @@ struct MoveLaneSurfacePoints {
     for (int i = 0; i < Dim; ++i) {
       gather(nodes.displacement_column + i, node, dx[i]);
       gather(nodes.remapped_column + i, node, u[i]);
+      coefficients_from_nodes<Dim>(u[i]);
     }
     for (int n = points.run_first(run); n < points.run_first(run + 1); ++n)
       if (move(points.order(n), dx, u)) ++leaving;
   }
   KOKKOS_FUNCTION void gather(int column, const int (&node)[1 << Dim], CellPolynomial<Dim, Real>& c) const {
     for (int a = 0; a < 1 << Dim; ++a) c[a] = node[a] < 0 ? Real(0) : *nodes.at(column, node[a]);
-    coefficients_from_nodes<Dim>(c);
   }
   KOKKOS_FUNCTION bool move(int b, const CellPolynomial<Dim, Real> (&dx)[Dim],
                             const CellPolynomial<Dim, Real> (&u)[Dim]) const {
@@ -138,8 +137,9 @@ struct MoveLaneSurfacePoints {
       });
     });
     const auto area = cofactor(deformation_increment(L, Real(1))) * points.area_of(b);
+    const CornerFunctions<Dim, Real> N(xi);
     Vector<Dim, Real> moved;
-    for (int i = 0; i < Dim; ++i) moved[i] = xi[i] + value_at<Dim>(dx[i], xi);
+    for (int i = 0; i < Dim; ++i) moved[i] = xi[i] + N.interpolate(dx[i]);
     const bool leaves = to_next_cell(grid, cell, moved);
     for (int i = 0; i < Dim; ++i) {
       points.area(b, i) = area[i];
@@ -179,16 +179,16 @@ struct LoadLaneSurface {
     return low;
   }
   KOKKOS_FUNCTION void load(int run) const {
-    CellPolynomial<Dim, Real> f[Dim];
-    for (auto& moments : f) moments = CellPolynomial<Dim, Real>::zero();
+    Vector<(1 << Dim), Real> f[Dim];
+    for (auto& at_nodes : f) at_nodes = Vector<(1 << Dim), Real>::zero();
     for (int n = points.run_first(run); n < points.run_first(run + 1); ++n) {
       const int b = points.order(n);
       const auto xi = points.xi_of(b);
       const auto x = grid.map(points.cell_of(b), xi).x;
       const auto force = virtual_stress.at(x, points.tractions(b)).stress * points.area_of(b);
-      for (int i = 0; i < Dim; ++i) add_moments<Dim>(f[i], force[i], xi);
+      const CornerFunctions<Dim, Real> N(xi);
+      for (int i = 0; i < Dim; ++i) N.add(f[i], force[i]);
     }
-    for (auto& moments : f) nodes_from_moments<Dim>(moments);
     int node[1 << Dim];
     const int cell = points.run_cell(run);
     lanes.nodes_of_cell(cell / lanes.box.cells[0], cell % lanes.box.cells[0], node);

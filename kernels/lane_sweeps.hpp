@@ -60,14 +60,14 @@ KOKKOS_FORCEINLINE_FUNCTION void accelerate(const CellLanes<Dim, Real, Device>& 
                                             const LaneNodes<Dim, Real, Device>& nodes,
                                             const LaneGroup<Dim>& group) {
   using P = typename Lanes<Real>::Pack;
-  CellPolynomial<Dim, P> dv[Dim];
+  Vector<(1 << Dim), P> dv[Dim];
   static_for<Dim>([&](auto i)
-                      VSB_UNROLLED { coefficients_of(nodes, nodes.increment_column + i, group, dv[i]); });
+                      VSB_UNROLLED { values_at_corners(nodes, nodes.increment_column + i, group, dv[i]); });
   for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
-    const auto xi = lanes.load_xi(entry);
+    const CornerFunctions<Dim, P> N(lanes.load_xi(entry));
     static_for<Dim>([&](auto i) VSB_UNROLLED {
       const P v = lanes.load(lanes.velocity_column + i, entry);
-      lanes.store(lanes.velocity_column + i, entry, v + value_at<Dim>(dv[i], xi));
+      lanes.store(lanes.velocity_column + i, entry, v + N.interpolate(dv[i]));
     });
   }
 }
@@ -93,7 +93,7 @@ struct AccelerateLanes {
     accelerate(lanes, nodes, group);
     CellPolynomial<Dim, P> p[Dim];
     lane_sums::momentum(lanes, group, p);
-    static_for<Dim>([&](auto i) VSB_UNROLLED { sums.add_moments(1 + i, group, p[i]); });
+    static_for<Dim>([&](auto i) VSB_UNROLLED { sums.add(1 + i, group, p[i]); });
   }
 };
 
@@ -138,9 +138,10 @@ struct MoveGroup {
 
   [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void operator()(const LaneGroup<Dim>& group,
                                                                   int layer) const {
-    CellPolynomial<Dim, P> dx[Dim], u[Dim];
+    Vector<(1 << Dim), P> dx[Dim];
+    CellPolynomial<Dim, P> u[Dim];
     static_for<Dim>([&](auto i) VSB_UNROLLED {
-      coefficients_of(nodes, nodes.displacement_column + i, group, dx[i]);
+      values_at_corners(nodes, nodes.displacement_column + i, group, dx[i]);
       coefficients_of(nodes, nodes.remapped_column + i, group, u[i]);
     });
     for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
@@ -155,16 +156,19 @@ struct MoveGroup {
       advance(entry, L);
       const P V = lanes.load(lanes.volume_column, entry);
       lanes.store(lanes.volume_column, entry, volume(V, L, P(1)));
+      const CornerFunctions<Dim, P> N(xi);
       Vector<Dim, P> moved;
-      static_for<Dim>([&](auto i) VSB_UNROLLED { moved[i] = xi[i] + value_at<Dim>(dx[i], xi); });
+      static_for<Dim>([&](auto i) VSB_UNROLLED { moved[i] = xi[i] + N.interpolate(dx[i]); });
       lanes.store_row(lanes.xi_column, entry, moved);
-      if (!all_in_unit_cube(moved)) leave(group, layer, entry);
+      if (!all_off_the_faces(moved)) leave(group, layer, entry);
     }
   }
-  KOKKOS_FORCEINLINE_FUNCTION static bool all_in_unit_cube(const Vector<Dim, P>& xi) {
-    auto inside = (xi[0] >= P(0)) & (xi[0] < P(1));
+  /// Whether all are in their cell as off_the_faces leaves them.
+  KOKKOS_FORCEINLINE_FUNCTION static bool all_off_the_faces(const Vector<Dim, P>& xi) {
+    const P lowest(math::epsilon<Real>);
+    auto inside = (xi[0] >= lowest) & (xi[0] < P(1));
     static_for<Dim>([&](auto i) VSB_UNROLLED {
-      if constexpr (i > 0) inside = inside & (xi[i] >= P(0)) & (xi[i] < P(1));
+      if constexpr (i > 0) inside = inside & (xi[i] >= lowest) & (xi[i] < P(1));
     });
     return !any(!inside);
   }
@@ -195,8 +199,8 @@ struct MoveGroup {
     }
   }
 
-  /// Takes the particles of a slot that left their cell to the layer's list. Ghosts are carried along, and
-  /// outside their cell would grow without bound: the slot's are reset.
+  /// Takes the particles of a slot that left their cell to the layer's list, and those on a face off it.
+  /// Ghosts are carried along, and outside their cell would grow without bound: the slot's are reset.
   [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void leave(const LaneGroup<Dim>& group, int layer,
                                                              size_t entry) const {
     const size_t slot = entry / P::width;
@@ -264,9 +268,11 @@ struct MoveGroup {
       const auto lower = xi[i] < P(Real(0)), upper = xi[i] >= P(Real(1));
       there[i] =
           xi[i] + math::select(lower, P(Real(1)), P(Real(0))) - math::select(upper, P(Real(1)), P(Real(0)));
+      const P lowest(math::epsilon<Real>);
+      there[i] = math::select(there[i] >= lowest, there[i], lowest);
       below[i] = bits_of(lower) & held;
       above[i] = bits_of(upper) & held;
-      inside &= bits_of((there[i] >= P(Real(0))) & (there[i] < P(Real(1))));
+      inside &= bits_of((xi[i] >= P(Real(-1))) & (there[i] < P(Real(1))));
     });
     if (inside != held) return false;
     xi = there;
@@ -284,8 +290,9 @@ struct MoveGroup {
       auto cell = before;
       Vector<Dim, Real> here;
       for (int i = 0; i < Dim; ++i) here[i] = xi[i][l];
-      if (!to_next_cell(grid, cell, here, lanes.dual ? Real(0.5) : Real(0))) continue;
+      const bool leaves = to_next_cell(grid, cell, here, lanes.dual ? Real(0.5) : Real(0));
       for (int i = 0; i < Dim; ++i) xi[i].set(l, here[i]);
+      if (!leaves) continue;
       const LaneMask lane = LaneMask(1) << l;
       const int layers = Dim == 1 ? 0 : cell[Dim - 1] - before[Dim - 1];
       (layers < -1 || layers > 1 ? head.far : head.to[layers + 1]) |= lane;

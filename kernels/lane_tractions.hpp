@@ -261,7 +261,7 @@ template <int j, bool Cubic, class Field, int Dim, class Real, class Device>
         return sigma;
       },
       f);
-  moments_of(lanes, group, lanes.volume_column, volume);
+  volume_moments(lanes, group, volume);
   static_for<volume.size>([&](auto k) VSB_UNROLLED { f[j][k] += divergence * volume[k]; });
   static_for<Dim>([&](auto i) VSB_UNROLLED { sums.add_moments(1 + Dim + i, group, f[i]); });
 }
@@ -281,7 +281,7 @@ template <bool Cubic, class Field, int Dim, class Real, class Device>
   static_for<Dim>([&](auto i) VSB_UNROLLED { nodes_from_moments<Dim>(f[i]); });
   if constexpr (Field::uniform) {
     CellPolynomial<Dim, P> volume;
-    moments_of(lanes, group, lanes.volume_column, volume);
+    volume_moments(lanes, group, volume);
     for_each_mask(on, group, [&](TractionMask tractions, const std::uint64_t* bits) {
       add_uniform(field.at(Vector<Dim, Real>::zero(), tractions).stress, on.grid.inverse_spacing, volume,
                   bits, f);

@@ -8,6 +8,7 @@
 
 #include <vsb/kernels/mirror_nodes.hpp>
 #include <vsb/kernels/scatter.hpp>
+#include <vsb/physics/explicit_dynamics.hpp>
 #include <vsb/views/nodes.hpp>
 #include <vsb/views/particles.hpp>
 
@@ -43,7 +44,7 @@ struct RemapNode {
     for (int i = 0; i < Dim; ++i) {
       const bool fixed = nodes.fixed_components(I) >> i & 1;
       Real& v = nodes.remapped_velocity(I, i);
-      v = m > 0 && !fixed ? v / m : Real(0);
+      v = has_mass(m) && !fixed ? v / m : Real(0);
     }
   }
 };

@@ -15,6 +15,7 @@
 
 #include <vsb/kernels/ordered_sum.hpp>
 #include <vsb/kernels/stiffness.hpp>
+#include <vsb/physics/explicit_dynamics.hpp>
 
 namespace vsb {
 
@@ -41,7 +42,7 @@ struct InvertBlock {
   KOKKOS_FUNCTION void operator()(int I) const {
     Real scale = 0;
     for (int i = 0; i < Dim; ++i) scale += block(I, i * Dim + i);
-    const bool idle = !(nodes.mass(I) > 0) || !(scale > 0);
+    const bool idle = !has_mass(nodes.mass(I)) || !(scale > 0);
     const auto held = [&](int i) { return idle || (nodes.fixed_components(I) >> i & 1) != 0; };
     auto m = Matrix<Dim, Real>::identity();
     for (int i = 0; i < Dim; ++i)

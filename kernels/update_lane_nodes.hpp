@@ -60,8 +60,9 @@ struct UpdateLaneNodes : LaneNodeRows<Dim, Real, Device, Planes> {
   KOKKOS_FUNCTION void operator()(int chunk) const {
     const int node = chunk * P::width;
     const P m = this->take_sum(0, node);
-    if (!any(m > P(Real(0)))) return leave_empty(node);
-    const P inverse_mass = math::select(m > P(Real(0)), P(Real(1)) / m, P(Real(0)));
+    const auto massive = has_mass(m);
+    if (!any(massive)) return leave_empty(node);
+    const P inverse_mass = math::select(massive, P(Real(1)) / m, P(Real(0)));
     inverse_mass.store(nodes.at(nodes.inverse_mass_column, node));
     static_for<Dim>([&](auto i) VSB_UNROLLED {
       const P v = this->sum(1 + i, node) * inverse_mass;

@@ -26,7 +26,7 @@ struct UpdateNode {
     for (int i = 0; i < Dim; ++i) {
       const bool fixed = nodes.fixed_components(I) >> i & 1;
       Real a = 0, v = 0;
-      if (m > 0 && !fixed) {
+      if (has_mass(m) && !fixed) {
         v = nodes.momentum(I, i) / m;
         a = cundall_damped(nodes.force(I, i), v, alpha) / m;
         v += dt * a;

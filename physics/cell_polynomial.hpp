@@ -6,7 +6,11 @@
 /// - a nodal field is sum_a N_a f_a = sum_k c_k q_k, with c from f by differences along each direction;
 /// - a sum over particles sum_p N_a(xi_p) w_p follows from the moments sum_p q_k(xi_p) w_p by the transposed
 ///   differences, and so does sum_p w_p . grad N_a from the moments of grad q_k.
-/// T is a number, or a pack with a cell in every lane.
+/// Differences have the round-off of the whole cell. A node whose only particle is next to its face has a
+/// mass far below that, and a velocity p_a / m_a that is none. Mass and momentum are therefore summed with
+/// N_a itself (CornerFunctions): terms of one sign, right to round-off at every node. So are the increments
+/// of particles, for the acceleration f_a / m_a of such a node is as large as its N_a is small. T is a
+/// number, or a pack with a cell in every lane.
 #pragma once
 
 #include <vsb/views/static_for.hpp>
@@ -64,6 +68,56 @@ template <int j, int Dim, class T>
 KOKKOS_FORCEINLINE_FUNCTION T derivative_at(const CellPolynomial<Dim, T>& c, const Vector<Dim, T>& xi) {
   return detail::nested<j, Dim - 1, 0, Dim>(c, xi);
 }
+
+/// The basis functions N_a(xi) of the corners, a as in multilinear.hpp, as products: N_a = row[r] last[c]
+/// with a = r + c rows.
+template <int Dim, class T>
+struct CornerFunctions {
+  static constexpr int rows = 1 << (Dim - 1);
+  Vector<rows, T> row;  ///< of all directions but the last; unused in 1D
+  Vector<2, T> last;
+
+  KOKKOS_FORCEINLINE_FUNCTION explicit CornerFunctions(const Vector<Dim, T>& xi) {
+    if constexpr (Dim > 1) {
+      row[0] = T(1) - xi[0];
+      row[1] = xi[0];
+    }
+    if constexpr (Dim == 3) {
+      row[2] = row[0] * xi[1];
+      row[3] = row[1] * xi[1];
+      const T lower = T(1) - xi[1];
+      row[0] = row[0] * lower;
+      row[1] = row[1] * lower;
+    }
+    last[0] = T(1) - xi[Dim - 1];
+    last[1] = xi[Dim - 1];
+  }
+  /// sum_a N_a f_a.
+  KOKKOS_FORCEINLINE_FUNCTION T interpolate(const Vector<(1 << Dim), T>& f) const {
+    Vector<2, T> at;
+    static_for<2>([&](auto c) VSB_UNROLLED {
+      if constexpr (Dim == 1) {
+        at[c] = f[c];
+      } else {
+        at[c] = row[0] * f[c * rows];
+        static_for<rows - 1>([&](auto r) VSB_UNROLLED { at[c] += row[r + 1] * f[c * rows + r + 1]; });
+      }
+    });
+    return last[0] * at[0] + last[1] * at[1];
+  }
+  /// sum_a += N_a w.
+  KOKKOS_FORCEINLINE_FUNCTION void add(Vector<(1 << Dim), T>& sum, T w) const {
+    static_for<2>([&](auto c) VSB_UNROLLED {
+      const T part = w * last[c];
+      static_for<rows>([&](auto r) VSB_UNROLLED {
+        if constexpr (Dim == 1)
+          sum[c] += part;
+        else
+          sum[c * rows + r] += part * row[r];
+      });
+    });
+  }
+};
 
 /// The monomials; q_0 = 1 stands for itself and is best not multiplied with.
 template <int Dim, class T>

@@ -26,7 +26,7 @@ struct LinearBasis : CellBasis<UniformGrid<Dim, Real>> {
     const auto cell = grid.cell_of(q);
     const int lowest = grid.node_index(cell);
     Vector<Dim, Real> xi;
-    for (int i = 0; i < Dim; ++i) xi[i] = q[i] - static_cast<Real>(cell[i]);
+    for (int i = 0; i < Dim; ++i) xi[i] = off_the_faces(q[i] - static_cast<Real>(cell[i]));
     Shape<Dim, support, Real> s;
     multilinear(xi, grid.inverse_spacing, s.N, s.dN);
     for (int a = 0; a < support; ++a) s.node[a] = lowest + grid.corner_offset(a);

@@ -17,7 +17,8 @@ struct MappedLinearBasis : CellBasis<MappedGrid<Dim, Real>> {
 
   /// The basis functions at x, which must lie in the grid. Support node a is corner a of the cell.
   KOKKOS_FUNCTION Shape<Dim, support, Real> shape(const Vector<Dim, Real>& x) const {
-    const auto place = grid.locate(x);
+    auto place = grid.locate(x);
+    for (int i = 0; i < Dim; ++i) place.xi[i] = off_the_faces(place.xi[i]);
     const int lowest = grid.node_index(place.cell);
     const auto point = grid.cell(place.cell).at(place.xi);
     const auto inverse_J = inverse(point.J);

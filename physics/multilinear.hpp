@@ -32,6 +32,14 @@ KOKKOS_FORCEINLINE_FUNCTION void multilinear(const Vector<Dim, T>& xi, const Vec
   }
 }
 
+/// A local coordinate in [0, 1], kept off the faces of its cell by round-off. A particle on a face would
+/// bring no mass to the nodes across the cell, N_a = 0, where grad N_a is not zero: its force there would be
+/// lost, and its velocity gradient would see nodes at rest ahead of a body that moves.
+template <class T>
+KOKKOS_FORCEINLINE_FUNCTION T off_the_faces(T xi) {
+  return math::min(math::max(xi, math::epsilon<T>), T(1) - T(0.5) * math::epsilon<T>);
+}
+
 /// One cell, by the positions of its corners in m.
 template <int Dim, class T>
 struct MultilinearCell {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// From cell to cell of a uniform grid: for what keeps its cell and its place xi in [0, 1)^Dim there.
+/// From cell to cell of a uniform grid: for what keeps its cell and its place xi there, off the cell's faces
+/// (physics/multilinear.hpp).
 #pragma once
 
+#include <vsb/physics/multilinear.hpp>
 #include <vsb/physics/uniform_grid.hpp>
 
 namespace vsb {
@@ -17,21 +19,26 @@ KOKKOS_INLINE_FUNCTION bool to_next_cell(const UniformGrid<Dim, Real>& grid, Vec
   bool out = false;
   for (int i = 0; i < Dim; ++i) {
     const Real round_off = 16 * static_cast<Real>(grid.cells[i]) * math::epsilon<Real>;
-    if (xi[i] >= Real(0) && xi[i] < Real(1)) continue;
-    if (cell[i] == 0 && xi[i] < Real(0) && xi[i] >= -round_off) continue;
-    if (cell[i] == grid.cells[i] - 1 && xi[i] >= Real(1) && xi[i] <= Real(1) + round_off) continue;
-    out = true;
+    const bool inside = xi[i] >= Real(0) && xi[i] < Real(1);
+    const bool at_lower_face = cell[i] == 0 && xi[i] < Real(0) && xi[i] >= -round_off;
+    const bool at_upper_face =
+        cell[i] == grid.cells[i] - 1 && xi[i] >= Real(1) && xi[i] <= Real(1) + round_off;
+    if (inside || at_lower_face || at_upper_face) {
+      xi[i] = off_the_faces(xi[i]);
+      continue;
+    }
     const Real whole = math::floor(xi[i]);
     if (!(math::abs(whole) < Real(1 << 20))) {
+      out = true;
       cell[i] = -1;
       continue;
     }
-    cell[i] += static_cast<int>(whole);
     xi[i] -= whole;
-    if (xi[i] >= Real(1)) {  // from just below zero
-      xi[i] = Real(0);
-      ++cell[i];
-    }
+    const bool just_below_zero = xi[i] >= Real(1);  // by less than round-off of 1
+    const int steps = static_cast<int>(whole) + (just_below_zero ? 1 : 0);
+    xi[i] = off_the_faces(just_below_zero ? Real(0) : xi[i]);
+    cell[i] += steps;
+    out = out || steps != 0;
   }
   if (margin == Real(0)) return out;
   for (int i = 0; i < Dim; ++i) {

@@ -56,6 +56,8 @@ template <class T>
 constexpr T epsilon = std::numeric_limits<T>::epsilon();
 template <class T>
 constexpr T infinity = std::numeric_limits<T>::infinity();
+template <class T>
+constexpr T smallest_normal = std::numeric_limits<T>::min();
 
 template <class T>
 KOKKOS_INLINE_FUNCTION T min(T a, T b) {

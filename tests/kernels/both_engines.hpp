@@ -124,21 +124,24 @@ Difference difference(const A& a, const B& b, const UniformGrid<Dim, Real>& grid
   return d;
 }
 
+/// 1e-12 in double, 1e-5 in float.
+template <class Real>
+constexpr double engine_tolerance = sizeof(Real) == 8 ? 1e-12 : 1e-5;
 /// What the bodies below are like.
 struct BodyShape {
   bool cubic = false;
   double drift = 0;            ///< m/s, of the whole body in all directions
   bool on_lower_face = false;  ///< of x
+  bool slivers = false;        ///< particles 2^-4 to 2^-40 cells beside a face
 };
 
 /// A block with a cavity and rough faces, particles anywhere in cells of 2^Dim, density about 1 kg/m^Dim,
 /// for a material of about 100 Pa: in 100 steps of 2 ms a wave runs through four cells or more.
 ///
 /// In float all loads, stresses and velocities are to be `amplitude` times as large, so that particles move
-/// little: the particle kernels round positions in the grid, and cell lanes positions in a cell. And in
-/// double a body drifts by less than a cell: cell lanes find nodal masses and momenta as differences of
-/// moments, to epsilon of those of a cell, so that a particle delta h before the upper face of a cell without
-/// others has a strain of up to epsilon / delta v dt / h from rounding alone.
+/// little: the particle kernels round positions in the grid, and cell lanes positions in a cell. A particle
+/// that passes a face a step sooner or later for that has another velocity gradient in this step. Which of
+/// two float engines is nearer to double is tested in flying_bodies.cpp.
 template <int Dim, class Real, template <int, class> class BasisOf = LinearBasis>
 struct BothEngines {
   static constexpr Real amplitude = sizeof(Real) == 4 ? Real(1e-5) : Real(1);
@@ -156,7 +159,7 @@ struct BothEngines {
   SurfacePoints<Dim, Real, Device> surface;  ///< none, unless a test has some
 
   explicit BothEngines(const BodyShape& shape, unsigned seed = 81) {
-    grid = make_grid<Dim, Real>({{38, 18, 18}});
+    grid = make_grid<Dim, Real>({{42, 22, 22}});
     if (shape.cubic) {
       Vector<Dim, Real> h;
       for (int i = 0; i < Dim; ++i) h[i] = Real(0.5);
@@ -180,10 +183,14 @@ struct BothEngines {
       for (int part = 0; part < 1 << Dim; ++part) {
         if (random.index(16) == 0) continue;
         Vector<Dim, Real> x;
-        for (int i = 0; i < Dim; ++i)
-          x[i] =
-              grid.lower[i] + grid.spacing[i] * (static_cast<Real>(cell[i]) + random.draw<Real>(0.02, 0.48) +
-                                                 static_cast<Real>(0.5 * (part >> i & 1)));
+        for (int i = 0; i < Dim; ++i) {
+          auto xi = random.draw<Real>(0.02, 0.48) + static_cast<Real>(0.5 * (part >> i & 1));
+          if (shape.slivers && random.index(2) == 0) {
+            const int bits = 4 + random.index(sizeof(Real) == 4 ? 13 : 37);
+            xi = part >> i & 1 ? Real(1) - std::ldexp(Real(1), -bits) : std::ldexp(Real(1), -bits);
+          }
+          x[i] = grid.lower[i] + grid.spacing[i] * (static_cast<Real>(cell[i]) + xi);
+        }
         places.push_back(x);
       }
     });
@@ -316,19 +323,15 @@ LinearElastic<Real> elastic() {
   return LinearElastic<Real>::from_young(100, 0.3);
 }
 
-/// 1e-12 in double, 1e-5 in float.
-template <class Real>
-constexpr double engine_tolerance = sizeof(Real) == 8 ? 1e-12 : 1e-5;
-
 template <int Dim, class Real, template <int, class> class BasisOf>
-void check_same(const BothEngines<Dim, Real, BasisOf>& engines) {
+void check_same(const BothEngines<Dim, Real, BasisOf>& engines, double tolerance = engine_tolerance<Real>) {
   const auto d = engines.compare();
   CHECK(d.same_mass);
-  CHECK(d.position < engine_tolerance<Real>);
-  CHECK(d.velocity < engine_tolerance<Real>);
-  CHECK(d.stress < engine_tolerance<Real>);
-  CHECK(d.volume < engine_tolerance<Real>);
-  CHECK(d.state < engine_tolerance<Real>);
+  CHECK(d.position < tolerance);
+  CHECK(d.velocity < tolerance);
+  CHECK(d.stress < tolerance);
+  CHECK(d.volume < tolerance);
+  CHECK(d.state < tolerance);
 }
 
 }  // namespace vsb::test

@@ -49,7 +49,7 @@ std::uint64_t hash_of(const ParticleBlock<Dim, Real, Device>& particles) {
 template <int Dim, class Real, class Engines>
 void check_free_bodies() {
   for (const bool cubic : {true, false})
-    for (const double drift : {0., 1.}) {
+    for (const double drift : {0., 5.}) {
       if (sizeof(Real) == 4 && drift > 0) continue;
       Engines engines({cubic, drift});
       // In single precision the direction in which a node turns around, and damping acts, hangs on round-off.
@@ -63,10 +63,30 @@ void check_free_bodies() {
     }
 }
 
+/// A step of particles next to the faces of their cells: nodes with next to no mass, and accelerations as
+/// large as that is small. Their places are the same to the last bit in both engines.
+template <int Dim, class Real, class Engines>
+void check_slivers() {
+  BodyShape shape;
+  shape.slivers = true;
+  shape.drift = 1;
+  for (const unsigned seed : {81u, 82u, 83u}) {
+    Engines engines(shape, seed);
+    engines.declare_everywhere(1);
+    UniformVirtualStress<Dim, Real> f;
+    f.count = 1;
+    f.stress[0] = pressure_stress<Dim>(Real(2));
+    engines.run(
+        elastic<Dim, Real>(), DeterminantVolume{}, [&](int) { return f; }, 1);
+    CAPTURE(seed);
+    check_same(engines, 64 * epsilon<Real>);
+  }
+}
+
 /// Under a pressure or another uniform stress, of another size in every step.
 template <int Dim, class Real, class Engines>
 void check_uniform_stress(bool cubic, bool pressure) {
-  const double drift = sizeof(Real) == 4 ? 0 : pressure ? 0.5 : 1;
+  const double drift = sizeof(Real) == 4 ? 0 : pressure ? 2 : 5;
   Engines engines({cubic, drift});
   engines.declare_everywhere(1);
   engines.run(elastic<Dim, Real>(), DeterminantVolume{}, [&](int n) {
@@ -91,7 +111,7 @@ void check_uniform_stress(bool cubic, bool pressure) {
 template <int Dim, class Real, class Engines>
 void check_mixed_tractions() {
   for (const TractionMask conservative : {0u, 2u}) {
-    Engines engines({true, sizeof(Real) == 4 ? 0. : 1.});
+    Engines engines({true, sizeof(Real) == 4 ? 0. : 5.});
     engines.declare([](const Vector<Dim, int>& ijk) { return striped<Dim>(ijk); });
     engines.declare_everywhere(8);
     engines.conservative = conservative;
@@ -133,7 +153,7 @@ void check_body_at_a_wall() {
 template <int Dim, class Real, class Engines>
 void check_fields_of_all_kinds() {
   for (const bool mixed : {false, true}) {
-    Engines engines({!mixed, sizeof(Real) == 4 ? 0. : 1.5});
+    Engines engines({!mixed, sizeof(Real) == 4 ? 0. : 5.});
     const auto f = four_fields<Dim, Real>(engines.grid, engines.amplitude);
     if (mixed) {
       engines.declare([](const Vector<Dim, int>& ijk) {

@@ -53,12 +53,8 @@ TractionFields<Dim, Real> three_fields(const UniformGrid<Dim, Real>& grid, Real 
   return f;
 }
 
-/// `count` points of every carrier: boundary particles near particles and a few in void cells far away,
-/// material points, and nodes; under one or two of three tractions.
-///
-/// Not in void cells beside particles: a node there may have next to no mass, and cell lanes find its
-/// velocity to epsilon of what a cell has (see BothEngines), which a boundary particle feels in full, but no
-/// particle.
+/// `count` points of every carrier: boundary particles near particles, some of them in void cells, a few far
+/// away, material points, and nodes; under one or two of three tractions.
 template <int Dim, class Real>
 SurfacePoints<Dim, Real, Device> points_of_all_kinds(const BothEngines<Dim, Real>& engines, int count) {
   const auto& basis = engines.basis;
@@ -82,7 +78,7 @@ SurfacePoints<Dim, Real, Device> points_of_all_kinds(const BothEngines<Dim, Real
         x(b, i) = grid.lower[i] + h * static_cast<Real>(random.index(i == 0 ? 26 : 10));
       else
         x(b, i) = particles.position(p, i);
-      if (kind == 0) x(b, i) += h * random.draw<Real>(-0.05, 0.05);
+      if (kind == 0) x(b, i) += h * random.draw<Real>(-0.5, 0.5);
       if (far_away && i == 0) x(b, i) = grid.lower[i] + h * random.draw<Real>(28, 37);
       a(b, i) = random.draw<Real>(-0.02, 0.02);
     }
@@ -143,7 +139,7 @@ TEMPLATE_TEST_CASE_SIG("boundary particles, material points and nodes under trac
                        ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (3, double),
                        (2, float), (3, float)) {
   for (const bool cubic : {false, true}) {
-    BothEngines<Dim, Real> engines({cubic, sizeof(Real) == 4 ? 0. : 1.5});
+    BothEngines<Dim, Real> engines({cubic, sizeof(Real) == 4 ? 0. : 5.});
     engines.surface = points_of_all_kinds(engines, 100);
     const auto cells_before = read(pack_surface_points(Exec(), engines.surface, engines.basis.grid).cell);
     const auto field_at = [&](int n) {
@@ -181,7 +177,9 @@ TEMPLATE_TEST_CASE_SIG("boundary particles, material points and nodes under trac
       }
       changed += moved;
     }
-    CHECK(off < engine_tolerance<Real>);
+    // A boundary particle in a void cell feels in full the velocity of nodes with little mass, to which the place
+    // of a particle beside a face is rounded in the grid.
+    CHECK(off < 10 * engine_tolerance<Real>);
     CHECK(area_off < engine_tolerance<Real>);
     CHECK(from_particle < engine_tolerance<Real>);
     if (sizeof(Real) == 8) {
@@ -195,7 +193,7 @@ TEMPLATE_TEST_CASE_SIG("the original method beside the modified one", "",
                        ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (3, double),
                        (2, float), (3, float)) {
   for (const bool uniform : {true, false}) {
-    BothEngines<Dim, Real> engines({!uniform, sizeof(Real) == 4 ? 0. : 1.5});
+    BothEngines<Dim, Real> engines({!uniform, sizeof(Real) == 4 ? 0. : 5.});
     declare_both_methods(engines);
     const auto run = [&](const auto& field_at, const auto& without_original) {
       engines.run_with_loads(

@@ -35,6 +35,11 @@ TEMPLATE_TEST_CASE_SIG("splines: free bodies", "", ((int Dim, typename Real), Di
   check_free_bodies<Dim, Real, Engines<Dim, Real>>();
 }
 
+TEMPLATE_TEST_CASE_SIG("splines: particles next to the faces of their cells", "",
+                       ((int Dim, typename Real), Dim, Real), (2, double), (3, double), (2, float)) {
+  check_slivers<Dim, Real, Engines<Dim, Real>>();
+}
+
 TEMPLATE_TEST_CASE_SIG("splines: bodies under a pressure and under any uniform tensor", "",
                        ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (3, double),
                        (2, float), (3, float)) {

@@ -23,7 +23,7 @@ TEMPLATE_TEST_CASE_SIG("one sweep: loaded bodies at rest and moving", "",
                        ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (3, double),
                        (1, float), (2, float), (3, float)) {
   for (const bool cubic : {true, false})
-    for (const double drift : {0., 1.}) {
+    for (const double drift : {0., 5.}) {
       if (sizeof(Real) == 4 && drift > 0) continue;
       BothEngines<Dim, Real> engines({cubic, drift});
       engines.lanes.memory.sweeps = Sweeps::one;
