@@ -97,7 +97,7 @@ void add_occupancy(const Size& size) {
     auto s = make_scene<Dim, Real>(size, Load::free_faces, Scatter::gathered);
     auto& o = s.state.occupancy;
     const auto run = [&] {
-      return mark_boundary_nodes(Exec(), s.state.particles, o.cells, s.basis, o.tractions, o.boundary);
+      return mark_boundary_of_located(Exec(), s.state.particles, o.cells, s.basis, o.tractions, o.boundary);
     };
     time(state, check_boundary_nodes(s, run), s.state.particles.count(),
          Traffic<Dim, Real>(s).mark_boundary_nodes(), run);

@@ -113,7 +113,12 @@ template <class Exec, int Dim, class Real, class Device>
 int lay_out_particles(const Exec& exec, const Particles<Dim, Real, Device>& particles,
                       LaneMemory<Dim, Real, Device>& m) {
   using Cells = CellLanes<Dim, Real, Device>;
+  require_reach<Exec, Device>();
   const int n = particles.count();
+  particles.check();
+  check_grid(m.grid);
+  check_material_state(particles, 0, n, m.lanes.state_size);
+  check_masses(exec, particles);
   Vector<Dim, int> lowest, highest;
   for (int i = 0; i < Dim; ++i)
     for (const int sign : {1, -1}) {
@@ -240,6 +245,10 @@ int pack_particles(const Exec& exec, ParticleBlock<Dim, Real, Device>&& block,
 template <class Exec, int Dim, class Real, class Device>
 void unpack_particles(const Exec& exec, const LaneMemory<Dim, Real, Device>& m,
                       const Particles<Dim, Real, Device>& particles) {
+  particles.check();
+  detail::check_rows("Particles::position", particles.position.extent(0), m.lanes.particle_count,
+                     "unpack into as many particles as were packed");
+  check_material_state(particles, 0, particles.count(), m.lanes.state_size);
   Kokkos::parallel_for("vsb::unpack_particles", Kokkos::RangePolicy<Exec>(exec, 0, m.lanes.group_count),
                        kernel::UnpackGroup<Dim, Real, Device>{m.lanes, particles, m.grid});
 }

@@ -25,6 +25,7 @@ struct OriginalVirtualStress {
   TractionMask original;  ///< the tractions of the original method
   int gauss_points;       ///< per direction, 1 to 4
 
+  TractionMask known() const { return field.known(); }
   template <class X>
   KOKKOS_FUNCTION auto at(const X& x, TractionMask mask) const {
     return field.at(x, mask);

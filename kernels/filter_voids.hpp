@@ -98,7 +98,7 @@ VoidFilterEffect void_filter_effect(const Exec& exec, const Particles<Dim, Real,
   const BoundaryNodes<Device> boundary("vsb::unfiltered_boundary_nodes", tractions.extent(0));
   VoidFilterEffect effect;
   effect.dropped_nodes =
-      mark_boundary_nodes(exec, particles, unfiltered, basis, tractions, boundary, conservative) -
+      mark_boundary_of_located(exec, particles, unfiltered, basis, tractions, boundary, conservative) -
       boundary_node_count;
   const BitRows<Dim> tiling(basis.grid);
   Kokkos::parallel_reduce(

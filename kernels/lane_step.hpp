@@ -27,8 +27,10 @@ struct LaneState {
   int gauss_points = 2;       ///< of these, per direction, 1 to 4
   long long repacked = 0;     ///< times
   int steps_since_repacked = 1000;
-  int steps_of_flow = 0;  ///< the last ones in a row in which many particles left their cells
-  bool unmarked = false;  ///< cells turned void or filled since the boundary was marked
+  int steps_of_flow = 0;   ///< the last ones in a row in which many particles left their cells
+  bool unmarked = false;   ///< cells turned void or filled since the boundary was marked
+  bool prepared = false;   ///< whether the nodes have the sums of the step to come
+  bool loads_due = false;  ///< of the step to come, by add_lane_loads
 
   bool cubic() const {
     for (int i = 1; i < Dim; ++i)
@@ -97,9 +99,74 @@ int count_loaded_nodes(const Exec& exec, const LaneState<Dim, Real, Device>& s) 
   return count_loaded_nodes(exec, s.memory.lanes, s.boundary);
 }
 
+namespace detail {
+
+/// Refuses lanes without particles that were packed.
+template <class Exec, int Dim, class Real, class Device>
+void check_packed(const LaneState<Dim, Real, Device>& s) {
+  require_reach<Exec, Device>();
+  if (s.memory.lanes.layer_first.extent(0) == 0)
+    refuse("the cell lanes hold no particles: call pack_lanes before prepare_lane_step");
+}
+
+/// Notes that sums are made, and what has to come before the step.
+template <int Dim, class Real, class Device>
+void note_prepared(LaneState<Dim, Real, Device>& s) {
+  s.prepared = true;
+  s.loads_due = s.original != 0 || s.surface.count() > 0;
+}
+
+/// The same after a step that lost particle `lost`, or none (-1); returns it.
+template <int Dim, class Real, class Device>
+int note_settled(LaneState<Dim, Real, Device>& s, int lost) {
+  note_prepared(s);
+  s.prepared = lost < 0;
+  return lost;
+}
+
+/// Refuses what a step would take without a word and get wrong.
+template <class State, class Material, class Field, int Dim, class Real>
+void check_lane_step(const State& s, const Material& material, const Field& next_virtual_stress,
+                     const StepOptions<Dim, Real>& options) {
+  check_options(options);
+  check_material(material);
+  const int remembered = Material::template state_size<Dim>();
+  if (remembered > s.memory.lanes.state_size)
+    refuse("the lanes hold ", s.memory.lanes.state_size,
+           " numbers of material state per particle and the material remembers ", remembered,
+           ": set LaneState::memory.lanes.state_size, and Particles::material_state, before pack_lanes");
+  if (!s.prepared)
+    refuse("no step is prepared: call prepare_lane_step after pack_lanes, with the load of the step to come");
+  if (!declared_as_marked(s.boundary))
+    refuse(
+        "what LaneState::boundary declares has changed: call prepare_lane_step again, with the load of the "
+        "step to come");
+  if (State::splines && (s.original != 0 || s.surface.count() > 0))
+    refuse(
+        "cell lanes with B-splines take virtual stresses alone: use the particle kernels (vsb::step) for "
+        "surface points and for the original method");
+  if (s.loads_due)
+    refuse(
+        "the loads on surface points and those of the original method are missing: call add_lane_loads after "
+        "prepare_lane_step and after every lane_step, with the load that these took");
+  check_load(next_virtual_stress, s.boundary.all_declared, s.original != 0 || s.surface.count() > 0);
+}
+
+/// The field of the sweeps: without the tractions of the original method.
+template <class Field>
+Field of_sweeps(const Field& field, TractionMask original) {
+  if constexpr (Field::loaded)
+    return field.without(original);
+  else
+    return field;
+}
+
+}  // namespace detail
+
 /// Marks the boundary of lanes that were packed anew.
 template <class Exec, int Dim, class Real, class Device>
 void mark_packed_lanes(const Exec& exec, LaneState<Dim, Real, Device>& s) {
+  detail::take_declarations(exec, s.boundary, s.memory.grid.node_count());
   fit_boundary(exec, s.memory.lanes, s.boundary);
   update_occupied(exec, s.memory.lanes, s.boundary);
   mark_lanes(exec, s.memory.lanes, s.memory.grid.cells, s.boundary, true);
@@ -130,6 +197,7 @@ bool bring_marks_up_to_date(const Exec& exec, LaneState<Dim, Real, Device>& s) {
 template <class Exec, int Dim, class Real, class Device>
 int pack_lanes(const Exec& exec, const Particles<Dim, Real, Device>& particles,
                LaneState<Dim, Real, Device>& s) {
+  s.prepared = false;
   const int lost = pack_particles(exec, particles, s.memory);
   if (lost < 0) mark_packed_lanes(exec, s);
   return lost;
@@ -138,6 +206,7 @@ int pack_lanes(const Exec& exec, const Particles<Dim, Real, Device>& particles,
 /// The same for particles that are not needed any more (see pack_particles).
 template <class Exec, int Dim, class Real, class Device>
 int pack_lanes(const Exec& exec, ParticleBlock<Dim, Real, Device>&& block, LaneState<Dim, Real, Device>& s) {
+  s.prepared = false;
   const int lost = pack_particles(exec, std::move(block), s.memory);
   if (lost < 0) mark_packed_lanes(exec, s);
   return lost;
@@ -200,21 +269,29 @@ int settle_leavers(const Exec& exec, State& s, const Field& next_virtual_stress,
 
 }  // namespace detail
 
-/// Sums up for the first step, or anew after a change of loads; `virtual_stress` is the field at the end of
-/// the step to come. After a change of declarations mark_packed_lanes must come first.
+/// Marks the boundary by what is declared and sums up for the first step, or anew after a change of loads or
+/// declarations; `virtual_stress` is the field at the end of the step to come. Where loads act on s.surface
+/// or by s.original, add_lane_loads must follow.
 template <class Exec, class Field, int Dim, class Real, class Device>
 void prepare_lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Field& virtual_stress) {
-  detail::bring_marks_up_to_date<Field>(exec, s);
-  detail::sum_lanes(exec, s, virtual_stress);
+  detail::check_packed<Exec>(s);
+  detail::forget_declarations(s.boundary);
+  mark_packed_lanes(exec, s);
+  check_load(virtual_stress, s.boundary.all_declared, s.original != 0 || s.surface.count() > 0);
+  detail::sum_lanes(exec, s, detail::of_sweeps(virtual_stress, s.original));
+  detail::note_prepared(s);
 }
 
 /// Advances by one step, and prepares the next one with its virtual stress. Returns -1, or the lowest number
-/// of a particle that left the grid.
+/// of a particle that left the grid. Throws std::invalid_argument, before anything is changed, where
+/// something is missing that a step needs (kernels/preconditions.hpp).
 template <class Exec, class Field, class Material, class Volume, int Dim, class Real, class Device>
 int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material& material,
               const Volume& volume, const Field& next_virtual_stress, const StepOptions<Dim, Real>& options) {
   const ProfilingRegion region("vsb::lane_step");
   auto& m = s.memory;
+  detail::check_lane_step(s, material, next_virtual_stress, options);
+  const auto swept = detail::of_sweeps(next_virtual_stress, s.original);
   detail::bring_marks_up_to_date<Field>(exec, s);
   const Kokkos::RangePolicy<Exec> over_chunks(exec, 0, m.lanes.node_count / m.lanes.width);
 
@@ -241,11 +318,11 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
         kernel::MoveLanes<decltype(cubic)::value, Field, Material, Volume, Dim, Real, Device>{
             detail::loaded_lanes(s),
             {m.lanes, m.nodes, m.grid, material, volume, m.leavers},
-            next_virtual_stress,
+            swept,
             and_sum});
   });
   move_surface_points(exec, m, s.surface);
-  return detail::settle_leavers(exec, s, next_virtual_stress, and_sum);
+  return detail::note_settled(s, detail::settle_leavers(exec, s, swept, and_sum));
 }
 
 }  // namespace vsb

@@ -7,8 +7,8 @@
 /// run.
 #pragma once
 
+#include <vsb/kernels/preconditions.hpp>
 #include <vsb/views/particle_bins.hpp>
-#include <vsb/views/particles.hpp>
 
 namespace vsb {
 
@@ -39,6 +39,16 @@ struct LocateParticle {
       bin(p) = b;
     }
     minimum = math::min(minimum, found);
+  }
+};
+
+/// One particle: the lowest number of those outside a grid, or at NaN.
+template <class Grid, class Cloud>
+struct FindOutside {
+  Cloud particles;
+  Grid grid;
+  KOKKOS_FUNCTION void operator()(int p, int& lowest) const {
+    if (p < lowest && !grid.contains(particles.position_of(p))) lowest = p;
   }
 };
 
@@ -102,17 +112,46 @@ struct SortBin {
 
 }  // namespace kernel
 
+namespace detail {
+
+/// What `look`, a LocateParticle of n particles or something that does the same and more, finds in `work`
+/// items.
+template <class Exec, class Look, class Basis, class Device>
+Whereabouts whereabouts(const Exec& exec, const Look& look, int work, int n, const ParticleBins<Device>& bins,
+                        const Basis& basis) {
+  require_reach<Exec, Device>();
+  check_rows("ParticleBins", bins.bin.extent(0), n,
+             "after adding or removing particles (or points) call make_state, or allocate_bins, again");
+  check_rows("ParticleBins::slot", bins.slot.extent(0), basis.bin_count(),
+             "make the state, or the bins, with the basis of the step");
+  int minimum = 1;
+  Kokkos::parallel_reduce("vsb::locate_particles", Kokkos::RangePolicy<Exec>(exec, 0, work), look,
+                          Kokkos::Min<int>(minimum));
+  exec.fence();
+  return {minimum <= 0, minimum < 0 ? minimum + n : -1};
+}
+
+}  // namespace detail
+
 /// Updates bins.bin. Returns on the host, so it waits for the device.
 template <class Exec, class Basis, class Cloud, class Device>
 Whereabouts locate_particles(const Exec& exec, const Cloud& particles, const ParticleBins<Device>& bins,
                              const Basis& basis) {
   const int n = particles.count();
-  int minimum = 1;
-  Kokkos::parallel_reduce("vsb::locate_particles", Kokkos::RangePolicy<Exec>(exec, 0, n),
-                          kernel::LocateParticle<Basis, Cloud, Device>{particles, basis, bins.bin},
-                          Kokkos::Min<int>(minimum));
+  return detail::whereabouts(exec, kernel::LocateParticle<Basis, Cloud, Device>{particles, basis, bins.bin},
+                             n, n, bins, basis);
+}
+
+/// The lowest number of a particle outside a grid (or that of a basis) or at NaN, -1 where there is none.
+/// Waits for the device.
+template <class Exec, class Cloud, class Grid>
+int find_outside(const Exec& exec, const Cloud& particles, const Grid& grid) {
+  const int n = particles.count();
+  int lowest = n;
+  Kokkos::parallel_reduce("vsb::find_outside", Kokkos::RangePolicy<Exec>(exec, 0, n),
+                          kernel::FindOutside<Grid, Cloud>{particles, grid}, Kokkos::Min<int>(lowest));
   exec.fence();
-  return {minimum <= 0, minimum < 0 ? minimum + n : -1};
+  return lowest < n ? lowest : -1;
 }
 
 /// Sorts the particles by the bins that locate_particles found. Waits for the device.

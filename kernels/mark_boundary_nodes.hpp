@@ -15,9 +15,8 @@
 /// mirror the cells inside, and touch nothing that those do not; ghost nodes are marked as their images are.
 #pragma once
 
+#include <vsb/kernels/locate_particles.hpp>
 #include <vsb/kernels/mirror_nodes.hpp>
-#include <vsb/physics/cell_numbering.hpp>
-#include <vsb/views/particles.hpp>
 
 namespace vsb {
 
@@ -93,6 +92,7 @@ struct BitRows {
 /// Allocates bit sets for a grid.
 template <class Device, int Dim>
 CellBits<Device> allocate_cell_bits(const CellNumbering<Dim>& grid) {
+  check_grid(grid);
   const BitRows<Dim> rows(grid);
   const auto r = static_cast<size_t>(rows.cell_row_count()), w = static_cast<size_t>(rows.words);
   using Rows = typename CellBits<Device>::Rows;
@@ -232,15 +232,12 @@ void mark_occupied_cells(const Exec& exec, const Particles<Dim, Real, Device>& p
                        kernel::MarkOccupied<Grid, Dim, Real, Device>{particles, grid, bits.occupied});
 }
 
-/// Overwrites boundary[node] with tractions[node] at the nodes of N1 and with 0 elsewhere. tractions[node]
-/// says which tractions are declared at the place of a node (bit k: traction k); those of `conservative` act
-/// at all active nodes, of N1 or not. All particles must lie in the grid. Returns the number of nodes, ghost
-/// nodes aside, at which a traction acts; waits for the device.
+/// What mark_boundary_nodes does, for particles that are known to lie in the grid.
 template <class Exec, class Basis, int Dim, class Real, class Device>
-int mark_boundary_nodes(const Exec& exec, const Particles<Dim, Real, Device>& particles,
-                        const CellBits<Device>& bits, const Basis& basis,
-                        const BoundaryNodes<Device>& tractions, const BoundaryNodes<Device>& boundary,
-                        TractionMask conservative = 0) {
+int mark_boundary_of_located(const Exec& exec, const Particles<Dim, Real, Device>& particles,
+                             const CellBits<Device>& bits, const Basis& basis,
+                             const BoundaryNodes<Device>& tractions, const BoundaryNodes<Device>& boundary,
+                             TractionMask conservative = 0) {
   const auto tiling = BitRows<Dim>::of(basis);
   const Kokkos::RangePolicy<Exec> over_cell_words(exec, 0, tiling.cell_row_count() * tiling.words);
   const Kokkos::RangePolicy<Exec> over_node_words(exec, 0, tiling.node_row_count() * tiling.words);
@@ -262,6 +259,31 @@ int mark_boundary_nodes(const Exec& exec, const Particles<Dim, Real, Device>& pa
   mirror_masks(exec, basis, boundary);
   exec.fence();
   return count;
+}
+
+/// Overwrites boundary[node] with tractions[node] at the nodes of N1 and with 0 elsewhere. tractions[node]
+/// says which tractions are declared at the place of a node (bit k: traction k); those of `conservative` act
+/// at all active nodes, of N1 or not. Reads positions alone. Returns the number of nodes, ghost nodes aside,
+/// at which a traction acts; waits for the device. Throws std::invalid_argument for a particle outside the
+/// grid or at NaN.
+template <class Exec, class Basis, int Dim, class Real, class Device>
+int mark_boundary_nodes(const Exec& exec, const Particles<Dim, Real, Device>& particles,
+                        const CellBits<Device>& bits, const Basis& basis,
+                        const BoundaryNodes<Device>& tractions, const BoundaryNodes<Device>& boundary,
+                        TractionMask conservative = 0) {
+  require_reach<Exec, Device>();
+  const BitRows<Dim> rows(basis.grid);
+  if (bits.occupied.extent(0) != static_cast<size_t>(rows.cell_row_count()) ||
+      bits.occupied.extent(1) != static_cast<size_t>(rows.words))
+    detail::refuse("the bits of the cells are those of another grid: allocate_cell_bits(basis.grid)");
+  detail::check_rows("tractions", tractions.extent(0), basis.node_count(),
+                     "give one mask per node of the basis");
+  detail::check_rows("boundary", boundary.extent(0), basis.node_count(),
+                     "give one mask per node of the basis");
+  if (const int outside = find_outside(exec, particles, basis); outside >= 0)
+    detail::refuse("mark_boundary_nodes: the position of particle ", outside,
+                   " is outside the grid or no number: mark the nodes of particles in the grid");
+  return mark_boundary_of_located(exec, particles, bits, basis, tractions, boundary, conservative);
 }
 
 }  // namespace vsb

@@ -22,8 +22,14 @@ struct LaneBoundary {
   Kokkos::View<int*, Device> stale;    ///< [layer]: 1 where the load of a group changed with the last marking
   BoundaryNodes<Device> tractions;     ///< [node of the lanes]: those that act there
   TractionMask everywhere = 0;         ///< tractions declared at all nodes
-  BoundaryNodes<Device> declared;      ///< [node of the grid]: tractions declared at some; may be empty
-  TractionMask conservative = 0;       ///< those that act at all active nodes
+  /// [node of the grid]: tractions declared at some; may be empty. Read when prepare_lane_step is called:
+  /// whoever changes the array calls it again.
+  Kokkos::View<const TractionMask*, Device> declared;
+  TractionMask conservative = 0;  ///< those that act at all active nodes
+  TractionMask all_declared = 0;  ///< of all nodes together; with what follows, as the marks have it
+  TractionMask marked_everywhere = 0, marked_conservative = 0;
+  const TractionMask* marked_declared = nullptr;
+  bool up_to_date = false;  ///< whether the above are of some declarations
 };
 
 namespace kernel {
@@ -156,6 +162,13 @@ struct LoadGroup {
   }
 };
 
+/// One node: its declaration, with all others.
+template <class Device>
+struct JoinDeclarations {
+  Kokkos::View<const TractionMask*, Device> declared;
+  KOKKOS_FUNCTION void operator()(int node, TractionMask& all) const { all |= declared(node); }
+};
+
 /// Counts loaded nodes.
 template <class Device>
 struct CountLoaded {
@@ -166,6 +179,43 @@ struct CountLoaded {
 };
 
 }  // namespace kernel
+
+namespace detail {
+
+/// Whether the marks are those of what is declared, as far as can be told without looking at every node.
+template <int Dim, class Device>
+bool declared_as_marked(const LaneBoundary<Dim, Device>& b) {
+  return b.up_to_date && b.everywhere == b.marked_everywhere && b.conservative == b.marked_conservative &&
+         b.declared.data() == b.marked_declared;
+}
+
+template <int Dim, class Device>
+void forget_declarations(LaneBoundary<Dim, Device>& b) {
+  b.up_to_date = false;
+}
+
+/// Notes what is declared, for marks that are about to be made anew. Waits for the device.
+template <class Exec, int Dim, class Device>
+void take_declarations(const Exec& exec, LaneBoundary<Dim, Device>& b, int grid_nodes) {
+  if (declared_as_marked(b)) return;
+  b.all_declared = 0;
+  if (b.declared.size() > 0) {
+    check_rows(
+        "LaneBoundary::declared", b.declared.extent(0), grid_nodes,
+        "give one mask per node of the grid (of the grid with its ghost layer with B-splines), or none");
+    Kokkos::parallel_reduce("vsb::join_declarations", Kokkos::RangePolicy<Exec>(exec, 0, grid_nodes),
+                            kernel::JoinDeclarations<Device>{b.declared},
+                            Kokkos::BOr<TractionMask>(b.all_declared));
+    exec.fence();
+  }
+  b.all_declared |= b.everywhere;
+  b.marked_everywhere = b.everywhere;
+  b.marked_conservative = b.conservative;
+  b.marked_declared = b.declared.data();
+  b.up_to_date = true;
+}
+
+}  // namespace detail
 
 /// Makes the boundary ready for lanes that were packed anew.
 template <class Exec, int Dim, class Real, class Device>

@@ -13,7 +13,7 @@
 #pragma once
 
 #include <Kokkos_ScatterView.hpp>
-#include <stdexcept>
+#include <vsb/kernels/preconditions.hpp>
 #include <vsb/views/particle_bins.hpp>
 
 namespace vsb {
@@ -111,7 +111,16 @@ void scatter(const Exec& exec, const std::string& label, Scatter strategy, int p
              const typename ScatterWorkspace<Real, Device>::Target& target) {
   namespace ke = Kokkos::Experimental;
   constexpr int columns = Contribution::columns;
+  require_reach<Exec, Device>();
+  detail::check_rows("the target of a sum over particles", target.extent(0), basis.node_count(),
+                     "allocate it with the basis of the sum");
   if (strategy == Scatter::gathered) {
+    detail::check_rows("ParticleBins::order", bins.order.extent(0), particles,
+                       "after adding or removing particles call make_state, or allocate_bins, again");
+    if (bins.occupied_count == 0 && particles > 0)
+      detail::refuse(
+          "the particles are not sorted by bin: call update_occupancy, or locate_particles and "
+          "sort_by_bin, before a sum over them");
     const auto slots = static_cast<size_t>(bins.occupied_count);
     const size_t width = static_cast<size_t>(Basis::support * columns);
     auto& sums = workspace.bin_sums;

@@ -44,20 +44,6 @@ void set_grid(SplineLaneState<Dim, Real, Device>& s, const UniformGrid<Dim, Real
   s.memory.sweeps = Sweeps::two;
 }
 
-namespace kernel {
-
-/// One particle: the lowest number of those outside the grid.
-template <int Dim, class Real, class Device>
-struct FindOutside {
-  Particles<Dim, Real, Device> particles;
-  UniformGrid<Dim, Real> grid;
-  KOKKOS_FUNCTION void operator()(int p, int& lowest) const {
-    if (p < lowest && !grid.contains(particles.position_of(p))) lowest = p;
-  }
-};
-
-}  // namespace kernel
-
 /// Sweep A alone, of all layers or of some.
 template <class Exec, class Field, int Dim, class Real, class Device>
 void sum_lanes(const Exec& exec, const SplineLaneState<Dim, Real, Device>& s, const Field& field,
@@ -94,6 +80,7 @@ bool bring_marks_up_to_date(const Exec& exec, SplineLaneState<Dim, Real, Device>
 template <class Exec, int Dim, class Real, class Device>
 void mark_packed_lanes(const Exec& exec, SplineLaneState<Dim, Real, Device>& s) {
   const auto& m = s.memory;
+  detail::take_declarations(exec, s.boundary, with_ghost_layer(s.grid).node_count());
   s.ghosts = list_ghosts(m.lanes, s.grid.cells, m.walls);
   s.crossed = decltype(s.crossed)("vsb::crossed", static_cast<size_t>(m.lanes.layers()));
   fit_boundary(exec, m.lanes, s.boundary);
@@ -108,13 +95,11 @@ namespace detail {
 template <class Exec, int Dim, class Real, class Device, class Pack>
 int pack_dual_lanes(const Exec& exec, const Particles<Dim, Real, Device>& particles,
                     SplineLaneState<Dim, Real, Device>& s, const Pack& pack) {
+  check_grid(s.grid);
+  s.prepared = false;
   set_grid(s, UniformGrid<Dim, Real>(s.grid));
-  int lost = particles.count();
-  Kokkos::parallel_reduce("vsb::find_outside", Kokkos::RangePolicy<Exec>(exec, 0, particles.count()),
-                          kernel::FindOutside<Dim, Real, Device>{particles, s.grid}, Kokkos::Min<int>(lost));
-  exec.fence();
-  if (lost < particles.count()) return lost;
-  lost = pack();
+  int lost = find_outside(exec, particles, s.grid);
+  if (lost < 0) lost = pack();
   if (lost < 0) mark_packed_lanes(exec, s);
   return lost;
 }
@@ -147,8 +132,12 @@ int count_loaded_nodes(const Exec& exec, const SplineLaneState<Dim, Real, Device
 /// As with linear functions.
 template <class Exec, class Field, int Dim, class Real, class Device>
 void prepare_lane_step(const Exec& exec, SplineLaneState<Dim, Real, Device>& s, const Field& virtual_stress) {
-  bring_marks_up_to_date<Field>(exec, s);
+  detail::check_packed<Exec>(s);
+  detail::forget_declarations(s.boundary);
+  mark_packed_lanes(exec, s);
+  check_load(virtual_stress, s.boundary.all_declared, false);
   sum_lanes(exec, s, virtual_stress);
+  detail::note_prepared(s);
 }
 
 /// Advances by one step, and prepares the next one with its virtual stress. Returns -1, or the lowest number
@@ -158,6 +147,7 @@ int lane_step(const Exec& exec, SplineLaneState<Dim, Real, Device>& s, const Mat
               const Volume& volume, const Field& next_virtual_stress, const StepOptions<Dim, Real>& options) {
   const ProfilingRegion region("vsb::lane_step");
   auto& m = s.memory;
+  detail::check_lane_step(s, material, next_virtual_stress, options);
   bring_marks_up_to_date<Field>(exec, s);
   const Kokkos::RangePolicy<Exec> over_chunks(exec, 0, m.lanes.node_count / m.lanes.width);
   const auto fold = [&](bool momentum_alone) {
@@ -190,7 +180,7 @@ int lane_step(const Exec& exec, SplineLaneState<Dim, Real, Device>& s, const Mat
                            {{m.lanes, m.nodes, m.grid, material, volume, m.leavers}, s.crossed},
                            next_virtual_stress,
                            summed});
-  return detail::settle_leavers(exec, s, next_virtual_stress, summed);
+  return detail::note_settled(s, detail::settle_leavers(exec, s, next_virtual_stress, summed));
 }
 
 }  // namespace vsb

@@ -21,12 +21,15 @@ struct State {
   SurfacePoints<Dim, Real, Device> surface;  ///< none, unless a traction is imposed on points
   ForceWorkspace<Real, Device> sums_workspace;
   ScatterWorkspace<Real, Device> remap_workspace;
+  bool weighed = false;  ///< whether the particles have been found to have masses and volumes
 };
 
-/// Allocates the nodes and the occupancy for given particles.
+/// Allocates the nodes and the occupancy for given particles. After particles were added or removed, or their
+/// arrays moved: anew.
 template <class Basis, int Dim, class Real, class Device>
 State<Dim, Real, Device> make_state(const Particles<Dim, Real, Device>& particles, const Basis& basis) {
   particles.check();
+  check_grid(basis.grid);
   State<Dim, Real, Device> s;
   s.particles = particles;
   s.nodes = allocate_nodes<Dim, Real, Device>(basis.node_count());
@@ -37,23 +40,61 @@ State<Dim, Real, Device> make_state(const Particles<Dim, Real, Device>& particle
 /// What stays the same over many steps.
 template <int Dim, class Real>
 struct StepOptions {
-  Real dt;                                                ///< s
+  Real dt = 0;                                            ///< s
   Real damping = 0;                                       ///< Cundall's alpha
   Vector<Dim, Real> gravity = Vector<Dim, Real>::zero();  ///< m/s^2
   VolumeUpdate volume_update = DeterminantVolume{};
   Scatter scatter = Scatter::gathered;
 };
 
+/// Refuses what no step can be made with.
+template <int Dim, class Real>
+void check_options(const StepOptions<Dim, Real>& options) {
+  if (!(options.dt > Real(0)) || !std::isfinite(options.dt))
+    detail::refuse("StepOptions::dt is ", options.dt,
+                   " s: set it to a time above 0 (vsb::time_step gives a stable one)");
+  if (!(options.damping >= Real(0)) || !std::isfinite(options.damping))
+    detail::refuse("StepOptions::damping is ", options.damping, ": set it to 0 or more");
+  for (int i = 0; i < Dim; ++i)
+    if (!std::isfinite(options.gravity[i]))
+      detail::refuse("StepOptions::gravity is ", options.gravity[i], " m/s^2 in direction ", i);
+}
+
+namespace detail {
+
+/// Refuses what a step would take without a word and get wrong.
+template <class Basis, int Dim, class Real, class Device>
+void check_step(const State<Dim, Real, Device>& s, const std::vector<Body<Real>>& bodies, const Basis& basis,
+                const StepOptions<Dim, Real>& options) {
+  check_options(options);
+  s.particles.check();
+  check_bodies(bodies, s.particles.count());
+  for (const auto& body : bodies) check_material_state(s.particles, body);
+  check_rows("State::nodes", s.nodes.sums.extent(0), basis.node_count(),
+             "make the state with the basis of the step");
+  if (s.surface.count() > 0)
+    check_rows("SurfacePoints::node_force", s.surface.node_force.extent(0), basis.node_count(),
+               "allocate the surface points with the basis of the step");
+}
+
+}  // namespace detail
+
 /// Advances the state by one step; `virtual_stress` is the field at the end of the step. Returns -1; or, and
 /// then the step is not made, the lowest number of a particle outside the grid, or the number of particles
-/// plus that of a surface point outside it.
+/// plus that of a surface point outside it. Throws std::invalid_argument, before anything is changed, where
+/// something is missing that a step needs (kernels/preconditions.hpp).
 template <class Exec, class Basis, class Field, int Dim, class Real, class Device>
 int step(const Exec& exec, State<Dim, Real, Device>& s, const std::vector<Body<Real>>& bodies,
          const Basis& basis, const Field& virtual_stress, const StepOptions<Dim, Real>& options) {
   const ProfilingRegion region("vsb::step");
+  require_reach<Exec, Device>();
+  detail::check_step(s, bodies, basis, options);
+  if (!s.weighed) check_masses(exec, s.particles);
+  s.weighed = true;
 
   const int lost = update_occupancy(exec, s.particles, s.occupancy, basis);
   if (lost >= 0) return lost;
+  check_load(virtual_stress, s.occupancy.declared, s.surface.count() > 0);
   const int lost_point = assemble_forces(exec, s.particles, s.occupancy, s.surface, s.nodes, s.sums_workspace,
                                          basis, virtual_stress, options.gravity, options.scatter);
   if (lost_point >= 0) return s.particles.count() + lost_point;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// What follows from where the particles are: their bins, and, when a particle has changed its bin, the order
-/// of the particles within the bins and the boundary nodes. Where bins are no cells (bases with reach) the
-/// boundary nodes are found at every call: a particle may change its cell and stay in its bin. With a fill
-/// criterion the boundary nodes follow the volumes too: the cells' fill is summed at every call, so that the
-/// nodes depend on the particles of the moment alone, and a resumed run finds the ones it had.
+/// What follows from where the particles are: their bins, and, when a particle has changed its bin or a
+/// traction is declared elsewhere, the order of the particles within the bins and the boundary nodes. Where
+/// bins are no cells (bases with reach) the boundary nodes are found at every call: a particle may change its
+/// cell and stay in its bin. With a fill criterion the boundary nodes follow the volumes too: the cells' fill
+/// is summed at every call, so that the nodes depend on the particles of the moment alone, and a resumed run
+/// finds the ones it had.
 #pragma once
 
 #include <vsb/kernels/filter_voids.hpp>
@@ -22,6 +23,9 @@ struct Occupancy {
   BoundaryNodes<Device> tractions;  ///< [node]: the tractions declared at the node's place
   BoundaryNodes<Device> boundary;   ///< [node]: the tractions that act there, N1 of Algorithm 1
   TractionMask conservative = 0;    ///< the tractions that act at all active nodes, where they are declared
+  BoundaryNodes<Device> marked;     ///< [node]: `tractions` as the last update found them
+  TractionMask marked_conservative = 0;
+  TractionMask declared = 0;  ///< the tractions in `marked`, of all nodes together
   int boundary_node_count = 0;
   double minimum_fill = 0;  ///< of a cell's volume, see set_fill_criterion; 0: no criterion
 };
@@ -29,12 +33,14 @@ struct Occupancy {
 /// Allocates the occupancy of `particles` particles; no traction is declared anywhere yet.
 template <class Device, class Basis>
 Occupancy<Device> allocate_occupancy(int particles, const Basis& basis) {
+  check_grid(basis.grid);
   const auto nodes = static_cast<size_t>(basis.node_count());
   Occupancy<Device> o;
   o.bins = allocate_bins<Device>(particles, basis.bin_count());
   o.cells = allocate_cell_bits<Device>(basis.grid);
   o.tractions = BoundaryNodes<Device>("vsb::declared_tractions", nodes);
   o.boundary = BoundaryNodes<Device>("vsb::boundary_nodes", nodes);
+  o.marked = BoundaryNodes<Device>("vsb::marked_tractions", nodes);
   return o;
 }
 
@@ -71,20 +77,62 @@ void set_void_filter(Occupancy<Device>& o, const Basis& basis) {
   mark_anew(o);
 }
 
-/// Brings the occupancy up to date. Returns the lowest number of a particle that left the grid, else -1.
+namespace kernel {
+
+/// One particle as in LocateParticle, and one node: 0, too, where its declaration is not the one that was
+/// marked.
+template <class Basis, class Cloud, class Device>
+struct LocateAndCompare {
+  LocateParticle<Basis, Cloud, Device> locate;
+  BoundaryNodes<Device> tractions, marked;
+  int particles, nodes;
+
+  KOKKOS_FUNCTION void operator()(int i, int& minimum) const {
+    if (i < particles) locate(i, minimum);
+    if (i < nodes && tractions(i) != marked(i)) minimum = math::min(minimum, 0);
+  }
+};
+
+/// One node: its declaration, to be compared with later ones; and all declarations together.
+template <class Device>
+struct TakeDeclaration {
+  BoundaryNodes<Device> tractions, marked;
+  KOKKOS_FUNCTION void operator()(int node, TractionMask& all) const {
+    marked(node) = tractions(node);
+    all |= tractions(node);
+  }
+};
+
+}  // namespace kernel
+
+/// Brings the occupancy up to date with the particles and with what is declared. Returns the lowest number of
+/// a particle that left the grid, else -1.
 template <class Exec, class Basis, int Dim, class Real, class Device>
 int update_occupancy(const Exec& exec, const Particles<Dim, Real, Device>& particles, Occupancy<Device>& o,
                      const Basis& basis) {
-  const auto where = locate_particles(exec, particles, o.bins, basis);
+  const int n = particles.count(), nodes = basis.node_count();
+  detail::check_rows("Occupancy::tractions", o.tractions.extent(0), nodes,
+                     "make the state, or the occupancy, with the basis of the step");
+  using Look = kernel::LocateAndCompare<Basis, Particles<Dim, Real, Device>, Device>;
+  auto where =
+      detail::whereabouts(exec, Look{{particles, basis, o.bins.bin}, o.tractions, o.marked, n, nodes},
+                          math::max(n, nodes), n, o.bins, basis);
   if (where.lost >= 0) return where.lost;
-  if (where.changed) sort_by_bin(exec, o.bins);
+  where.changed = where.changed || o.conservative != o.marked_conservative;
+  if (where.changed) {
+    sort_by_bin(exec, o.bins);
+    Kokkos::parallel_reduce("vsb::take_declarations", Kokkos::RangePolicy<Exec>(exec, 0, nodes),
+                            kernel::TakeDeclaration<Device>{o.tractions, o.marked},
+                            Kokkos::BOr<TractionMask>(o.declared));
+    o.marked_conservative = o.conservative;
+  }
   const bool refilled = o.minimum_fill > 0 && mark_underfilled_cells(exec, particles, o.bins, basis,
                                                                      o.minimum_fill, o.cells.underfilled);
   const bool moved = where.changed || Basis::reach > 0;
   if (moved && o.cells.outside.size() > 0) update_outside(exec, particles, o.cells, basis);
   if (moved || refilled)
     o.boundary_node_count =
-        mark_boundary_nodes(exec, particles, o.cells, basis, o.tractions, o.boundary, o.conservative);
+        mark_boundary_of_located(exec, particles, o.cells, basis, o.tractions, o.boundary, o.conservative);
   return -1;
 }
 

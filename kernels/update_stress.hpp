@@ -8,9 +8,9 @@
 /// one.
 #pragma once
 
-#include <stdexcept>
-#include <string>
+#include <algorithm>
 #include <vector>
+#include <vsb/kernels/preconditions.hpp>
 #include <vsb/physics/material.hpp>
 #include <vsb/views/nodes.hpp>
 #include <vsb/views/particles.hpp>
@@ -58,7 +58,7 @@ struct UpdateStress {
 /// Particles first, ..., last - 1 and what they are made of.
 template <class Real>
 struct Body {
-  int first, last;
+  int first = 0, last = 0;
   Material<Real> material;
   int state_offset = 0;  ///< the state of particle p is row p + state_offset of Particles::material_state
 };
@@ -72,17 +72,45 @@ int state_size(const Material<Real>& material) {
 /// Throws std::invalid_argument where the particles lack the state that a body's material remembers.
 template <int Dim, class Real, class Device>
 void check_material_state(const Particles<Dim, Real, Device>& particles, const Body<Real>& body) {
-  const int columns = state_size<Dim>(body.material), first = body.first + body.state_offset,
-            last = body.last + body.state_offset;
-  const auto& state = particles.material_state;
-  if (columns == 0 || body.first == body.last ||
-      (first >= 0 && last <= static_cast<int>(state.extent(0)) &&
-       columns <= static_cast<int>(state.extent(1))))
-    return;
-  throw std::invalid_argument("vsb::Particles: material_state is " + std::to_string(state.extent(0)) + " x " +
-                              std::to_string(state.extent(1)) + "; a body's material needs rows " +
-                              std::to_string(first) + " to " + std::to_string(last - 1) + " with " +
-                              std::to_string(columns) + " columns");
+  check_material_state(particles, body.first + body.state_offset, body.last + body.state_offset,
+                       state_size<Dim>(body.material));
+}
+
+/// Refuses a material with a stiffness that is no number, as one that was never set may have.
+template <class Material>
+void check_material(const Material& material) {
+  if (const double M = material.constrained_modulus(); !(M >= 0) || std::isinf(M))
+    detail::refuse("the constrained modulus of a material is ", M,
+                   " Pa: make materials by their functions from(...) and from_young(...)");
+}
+
+/// Refuses bodies of which a particle is in none, or in several: it would stay where it is, or advance twice.
+template <class Real>
+void check_bodies(const std::vector<Body<Real>>& bodies, int particles) {
+  std::vector<std::pair<int, int>> ranges;
+  int next = 0;  // the particle after those of the bodies so far, as long as these follow each other
+  for (const auto& body : bodies) {
+    std::visit([](const auto& material) { check_material(material); }, body.material);
+    if (body.first < 0 || body.first > body.last || body.last > particles)
+      detail::refuse("a body has the particles ", body.first, ", ..., last - 1 with last = ", body.last,
+                     ", but there are ", particles, ": set Body::first and Body::last");
+    if (body.first == next && ranges.empty())
+      next = body.last;
+    else if (body.first < body.last)
+      ranges.emplace_back(body.first, body.last);
+  }
+  std::sort(ranges.begin(), ranges.end());
+  for (const auto& [first, last] : ranges) {
+    if (first < next)
+      detail::refuse("particle ", first, " is in two bodies: Body::last is one past the last");
+    if (first > next) break;
+    next = last;
+  }
+  if (next < particles)
+    detail::refuse(
+        "particle ", next, " of ", particles,
+        " is in no body, so that it would not move: pass a Body for it (Body::last is one past the "
+        "last particle)");
 }
 
 /// Updates the particles of all bodies; dt in s. Throws as check_material_state does.

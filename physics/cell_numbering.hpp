@@ -20,7 +20,7 @@ struct CellNumbering {
   static constexpr int dimension = Dim;
   static constexpr int corners = 1 << Dim;  ///< nodes of a cell
 
-  Vector<Dim, int> cells;  ///< cells in each direction
+  Vector<Dim, int> cells = Vector<Dim, int>::zero();  ///< cells in each direction
 
   KOKKOS_FUNCTION int node_count() const {
     int n = 1;

@@ -91,6 +91,15 @@ struct TractionFields : ActsOnParticles {
   TractionMask balanced = 0;  ///< the tractions to which `balance` belongs, all at the same nodes
   RigidBodyForce<Dim, Real> balance = RigidBodyForce<Dim, Real>::zero();  ///< see kernels/self_balance.hpp
 
+  TractionMask known() const { return first_tractions(count); }
+  TractionFields without(TractionMask tractions) const {
+    auto rest = *this;
+    for (int k = 0; k < count; ++k)
+      if (tractions >> k & 1u) rest.field[k] = StressField<Dim, Real>();
+    rest.balanced &= ~tractions;
+    return rest;
+  }
+
   KOKKOS_FUNCTION VirtualStressValue<Dim, Real> at(const Vector<Dim, Real>& x, TractionMask mask) const {
     auto sum = VirtualStressValue<Dim, Real>::zero();
     for (int k = 0; k < count; ++k) {
@@ -112,6 +121,14 @@ struct AffineVirtualStress : ActsOnParticles {
   AffineStress<Dim, Real> field[capacity];
   Real factor[capacity];  ///< on the field of traction k, at this time
   int count = 0;
+
+  TractionMask known() const { return first_tractions(count); }
+  AffineVirtualStress without(TractionMask tractions) const {
+    auto rest = *this;
+    for (int k = 0; k < count; ++k)
+      if (tractions >> k & 1u) rest.factor[k] = Real(0);
+    return rest;
+  }
 
   int axis = -1;  ///< the direction along which all of them vary, and without shear; -1: they may do anything
 
@@ -164,10 +181,12 @@ struct AffineVirtualStress : ActsOnParticles {
 template <class Functor>
 struct FunctorVirtualStress : ActsOnParticles {
   Functor functor;
+  TractionMask acting = ~TractionMask(0);
 
+  FunctorVirtualStress without(TractionMask tractions) const { return {{}, functor, acting & ~tractions}; }
   template <int Dim, class T>
   KOKKOS_FUNCTION VirtualStressValue<Dim, T> at(const Vector<Dim, T>& x, TractionMask mask) const {
-    return mask != 0 ? functor(x) : VirtualStressValue<Dim, T>::zero();
+    return (mask & acting) != 0 ? functor(x) : VirtualStressValue<Dim, T>::zero();
   }
 };
 
@@ -176,7 +195,7 @@ struct FunctorVirtualStress : ActsOnParticles {
 /// there (KOKKOS_FUNCTION). The divergence must be that of the stress: what differs acts as a body force.
 template <class Functor>
 FunctorVirtualStress<Functor> virtual_stress_of(const Functor& functor) {
-  return {{}, functor};
+  return {{}, functor, ~TractionMask(0)};
 }
 
 }  // namespace vsb

@@ -15,9 +15,9 @@ struct UniformGrid : CellNumbering<Dim> {
   using CellNumbering<Dim>::cells;
   using real = Real;
 
-  Vector<Dim, Real> lower;            ///< position of node 0, m
-  Vector<Dim, Real> spacing;          ///< cell size, m
-  Vector<Dim, Real> inverse_spacing;  ///< 1/m
+  Vector<Dim, Real> lower = Vector<Dim, Real>::zero();            ///< position of node 0, m
+  Vector<Dim, Real> spacing = Vector<Dim, Real>::zero();          ///< cell size, m
+  Vector<Dim, Real> inverse_spacing = Vector<Dim, Real>::zero();  ///< 1/m
 
   UniformGrid() = default;
   KOKKOS_FUNCTION UniformGrid(const Vector<Dim, Real>& lower_corner, const Vector<Dim, Real>& cell_size,

@@ -4,6 +4,9 @@
 /// normal n is replaced by any field with sbar . n = t there (Eq. 14); a pressure p, positive in compression,
 /// is sbar = -p I.
 ///
+/// What a step asks of a field: known(), the tractions that it has a stress for; on cell lanes also
+/// without(mask), the same field less some tractions.
+///
 /// What a kernel asks of a field: `loaded` (whether particles have anything to add), `uniform` (whether it is
 /// the same everywhere), `affine` (whether it is affine in x; then sum(mask) gives it), `cell_quadrature`
 /// (whether whole cells have anything to add), acting_at(x), the tractions that may act on a particle at x,
@@ -28,6 +31,11 @@ struct VirtualStressValue {
   }
 };
 
+/// Tractions 0, ..., count - 1.
+inline TractionMask first_tractions(int count) {
+  return count <= 0 ? 0 : ~TractionMask(0) >> (count < 32 ? 32 - count : 0);
+}
+
 /// What most fields have in common: they act on particles, and on all of them.
 struct ActsOnParticles {
   static constexpr bool loaded = true, uniform = false, affine = false, cell_quadrature = false;
@@ -35,6 +43,7 @@ struct ActsOnParticles {
   KOKKOS_FUNCTION TractionMask acting_at(const Position&) const {
     return ~TractionMask(0);
   }
+  TractionMask known() const { return ~TractionMask(0); }
 };
 
 /// No traction anywhere; kernels skip the virtual stress at compile time.
@@ -60,6 +69,13 @@ struct UniformVirtualStress : ActsOnParticles {
   SymmetricTensor<Dim, Real> stress[capacity];  ///< sbar of traction k at this time, Pa, tension positive
   int count = 0;
 
+  TractionMask known() const { return first_tractions(count); }
+  UniformVirtualStress without(TractionMask tractions) const {
+    auto rest = *this;
+    for (int k = 0; k < count; ++k)
+      if (tractions >> k & 1u) rest.stress[k] = SymmetricTensor<Dim, Real>::zero();
+    return rest;
+  }
   KOKKOS_FUNCTION VirtualStressValue<Dim, Real> at(const Vector<Dim, Real>&, TractionMask mask) const {
     auto value = VirtualStressValue<Dim, Real>::zero();
     for (int k = 0; k < count; ++k)
@@ -73,6 +89,7 @@ template <class Field>
 struct OnSurfacePoints {
   static constexpr bool loaded = false, cell_quadrature = false;
   Field field;
+  TractionMask known() const { return field.known(); }
   template <int Dim, class T>
   KOKKOS_FUNCTION VirtualStressValue<Dim, T> at(const Vector<Dim, T>& x, TractionMask mask) const {
     return field.at(x, mask);

@@ -116,6 +116,7 @@ endfunction()
 
 # Builds the given source tree inside this build, with the backend asked for, and reports version and devices.
 macro(vsb_build_kokkos tree)
+  set(vsb_builds_kokkos ON)
   string(TOUPPER "${VSB_BACKEND}" vsb_backend_upper)
   set(Kokkos_ENABLE_SERIAL ON CACHE BOOL "")
   set(Kokkos_ENABLE_${vsb_backend_upper} ON CACHE BOOL "")
@@ -127,8 +128,11 @@ macro(vsb_build_kokkos tree)
   set(CMAKE_MESSAGE_LOG_LEVEL_before "${CMAKE_MESSAGE_LOG_LEVEL}")
   set(CMAKE_MESSAGE_LOG_LEVEL WARNING)  # Kokkos's own configuration report is long; one line of ours sums it up
   set(CMAKE_WARN_DEPRECATED OFF)
+  set(vsb_pic_before "${CMAKE_POSITION_INDEPENDENT_CODE}")
+  set(CMAKE_POSITION_INDEPENDENT_CODE ON)  # shared objects may link it, too
   FetchContent_Declare(Kokkos SYSTEM SOURCE_DIR "${tree}")
   FetchContent_MakeAvailable(Kokkos)
+  set(CMAKE_POSITION_INDEPENDENT_CODE "${vsb_pic_before}")
   set(CMAKE_WARN_DEPRECATED ON)
   set(CMAKE_MESSAGE_LOG_LEVEL "${CMAKE_MESSAGE_LOG_LEVEL_before}")
   get_directory_property(vsb_kokkos_version DIRECTORY "${tree}" DEFINITION Kokkos_VERSION)
@@ -152,6 +156,7 @@ if(VSB_BACKEND STREQUAL "Cuda" AND NOT TARGET Kokkos::kokkos)
 endif()
 
 set(vsb_kokkos_origin "")
+set(vsb_builds_kokkos OFF)  # whether it is installed with vsb
 if(TARGET Kokkos::kokkos)
   set(vsb_kokkos_origin "the parent project")
   set(vsb_kokkos_version "${Kokkos_VERSION}")

@@ -70,6 +70,15 @@ KOKKOS_INLINE_FUNCTION T max(T a, T b) {
 }
 }  // namespace math
 
+/// Whether kernels on Exec may touch Views of Device: every door to the kernels asks so, in these words.
+template <class Exec, class Device>
+constexpr void require_reach() {
+  static_assert(
+      Kokkos::SpaceAccessibility<Exec, typename Device::memory_space>::accessible,
+      "vsb: the execution space Exec cannot reach the memory of Device. Take both from one backend: "
+      "`using Device = Exec::device_type;`");
+}
+
 /// A named region in Kokkos Tools for the lifetime of the object (Kokkos has its own from 4.1 on).
 class ProfilingRegion {
  public:

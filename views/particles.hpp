@@ -34,16 +34,19 @@ struct Particles {
   /// Views a caller's array as a field without owning it: entry (p, c) is at
   /// first[p * row_stride + c * column_stride]. Strides count numbers, not bytes.
   static Fields wrap(Real* first, int particles, int columns, int row_stride, int column_stride = 1) {
+    check_wrapped(first, particles, columns, row_stride, column_stride);
     return Fields(first,
                   Kokkos::LayoutStride(static_cast<size_t>(particles), static_cast<size_t>(row_stride),
                                        static_cast<size_t>(columns), static_cast<size_t>(column_stride)));
   }
   /// The same for one number per particle: entry p is at first[p * stride].
   static Scalars wrap(Real* first, int particles, int stride = 1) {
+    check_wrapped(first, particles, 1, stride, 1);
     return Scalars(first, Kokkos::LayoutStride(static_cast<size_t>(particles), static_cast<size_t>(stride)));
   }
 
-  KOKKOS_FUNCTION int count() const { return static_cast<int>(mass.extent(0)); }
+  /// By their positions: all that the boundary is marked by.
+  KOKKOS_FUNCTION int count() const { return static_cast<int>(position.extent(0)); }
 
   template <int N>
   KOKKOS_FUNCTION static Vector<N, Real> row(const Fields& field, int p) {
@@ -61,16 +64,39 @@ struct Particles {
 
   /// Throws std::invalid_argument, naming the field, unless all fields have the shapes given above.
   void check() const {
-    const auto expect = [&](const char* name, size_t rows, size_t columns, size_t wanted) {
-      if (rows != mass.extent(0) || columns != wanted)
-        throw std::invalid_argument(std::string("vsb::Particles: ") + name + " is " + std::to_string(rows) +
-                                    " x " + std::to_string(columns) + ", expected " +
-                                    std::to_string(mass.extent(0)) + " x " + std::to_string(wanted));
+    const size_t particles = position.extent(0) > 0 ? position.extent(0) : mass.extent(0);
+    const auto expect = [&](const char* name, const auto& field, size_t columns, size_t wanted) {
+      if (field.extent(0) != particles || columns != wanted)
+        throw std::invalid_argument(std::string("vsb::Particles: ") + name + " is " +
+                                    std::to_string(field.extent(0)) + " x " + std::to_string(columns) +
+                                    ", expected " + std::to_string(particles) + " x " +
+                                    std::to_string(wanted) + ": wrap an array of one's own or allocate it");
     };
-    expect("position", position.extent(0), position.extent(1), Dim);
-    expect("velocity", velocity.extent(0), velocity.extent(1), Dim);
-    expect("volume", volume.extent(0), 1, 1);
-    expect("cauchy_stress", cauchy_stress.extent(0), cauchy_stress.extent(1), stress_size);
+    expect("position", position, position.extent(1), Dim);
+    expect("velocity", velocity, velocity.extent(1), Dim);
+    expect("mass", mass, 1, 1);
+    expect("volume", volume, 1, 1);
+    expect("cauchy_stress", cauchy_stress, cauchy_stress.extent(1), stress_size);
+  }
+
+ private:
+  /// Throws std::invalid_argument for an array whose entries (p, c) are not all at places of their own.
+  static void check_wrapped(const Real* first, int particles, int columns, int row_stride,
+                            int column_stride) {
+    const auto refuse = [&](const std::string& why) {
+      throw std::invalid_argument("vsb::Particles::wrap: " + why + " (" + std::to_string(particles) +
+                                  " particles, " + std::to_string(columns) + " columns, strides " +
+                                  std::to_string(row_stride) + " and " + std::to_string(column_stride) + ")");
+    };
+    if (particles < 0 || columns < 1 || row_stride < 1 || column_stride < 1)
+      refuse("counts and strides must be positive; strides count numbers");
+    if (first == nullptr && particles > 0) refuse("the array is a null pointer");
+    const auto in_a_row = static_cast<long long>(columns - 1) * column_stride,
+               in_a_column = static_cast<long long>(particles - 1) * row_stride;
+    if (particles > 1 && in_a_row >= row_stride && in_a_column >= column_stride)
+      refuse(
+          "rows overlap: the strides are the distances from one particle, and from one component, to the "
+          "next");
   }
 };
 

@@ -46,7 +46,7 @@ class LaneEngine {
 
   /// Makes ready for a first step under these loads. Returns -1, or what step() returns of a surface point.
   int prepare(const Loads<Dim, Real>& loads);
-  bool prepared() const { return prepared_; }
+  bool prepared() const { return state_.prepared; }
   /// Advances, and makes ready for another step, under the loads of that one. Returns -1, or the number of a
   /// particle that left the grid, or the number of particles plus that of a surface point that did.
   int step(const Loads<Dim, Real>& next);
@@ -82,7 +82,6 @@ class LaneEngine {
   Setup setup_;
   ExecutionSpace exec_;
   State state_;
-  bool prepared_ = false;
 };
 
 }  // namespace vsb::app

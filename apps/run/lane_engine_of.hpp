@@ -83,7 +83,6 @@ template <int Dim, class Real, class State>
 int LaneEngine<Dim, Real, State>::prepare(const Loads<Dim, Real>& loads) {
   loads.template with_lane_field<!State::splines>(
       [&](const auto& field) { prepare_lane_step(exec_, state_, field); });
-  prepared_ = true;
   return add_loads(loads);
 }
 
@@ -206,7 +205,7 @@ void LaneEngine<Dim, Real, State>::save(ByteSink& to) const {
   w.number(m.reach);
   w.number(state_.steps_since_repacked);
   w.number(state_.steps_of_flow);
-  w.number(prepared_);
+  w.number(state_.prepared);
   w.number(l.one_sweep());
   const auto groups = detail::on_host(l.groups);
   std::vector<GroupShape> shape;
@@ -297,7 +296,7 @@ bool LaneEngine<Dim, Real, State>::restore(ByteSource& saved) {
   p.sorted = false;
   if (!r.at_end()) return false;
   mark_packed_lanes(exec_, state_);
-  prepared_ = prepared;
+  state_.prepared = prepared;
   return true;
 }
 

@@ -81,8 +81,10 @@ ParticleBlock<Dim, Real, Device> populate(const UniformGrid<Dim, Real>& grid,
   random.shuffle(places);
   const auto block = allocate_particles<Dim, Real, Device>(static_cast<int>(places.size()));
   edit(block, [&](const auto& particles) {
-    for (int p = 0; p < particles.count(); ++p)
+    for (int p = 0; p < particles.count(); ++p) {
       for (int i = 0; i < Dim; ++i) particles.position(p, i) = places[static_cast<size_t>(p)][i];
+      particles.mass(p) = particles.volume(p) = Real(1);
+    }
   });
   return block;
 }

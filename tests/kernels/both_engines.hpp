@@ -228,8 +228,9 @@ struct BothEngines {
   /// where(ijk) gives the tractions of a node of the grid, or of one of the ghost layer.
   template <class Where>
   void declare(const Where& where) {
-    lanes.boundary.declared = BoundaryNodes<Device>("vsb::declared", masks.size());
-    edit(lanes.boundary.declared, [&](const auto& host) {
+    const BoundaryNodes<Device> declared("vsb::declared", masks.size());
+    lanes.boundary.declared = declared;
+    edit(declared, [&](const auto& host) {
       for (size_t I = 0; I < masks.size(); ++I) {
         host(I) = where(ijk_of(static_cast<int>(I)));
         masks[I] |= host(I);

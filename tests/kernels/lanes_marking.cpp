@@ -104,8 +104,9 @@ int pack_and_check(const UniformGrid<Dim, Real>& grid, const std::vector<bool>& 
   s.boundary.everywhere = 8;
   if (masks > 1) {
     s.boundary.conservative = 2;
-    s.boundary.declared = BoundaryNodes<Device>("vsb::declared", declared.size());
-    edit(s.boundary.declared, [&](const auto& host) {
+    const BoundaryNodes<Device> on_nodes("vsb::declared", declared.size());
+    s.boundary.declared = on_nodes;
+    edit(on_nodes, [&](const auto& host) {
       for (size_t I = 0; I < declared.size(); ++I) {
         host(I) = static_cast<TractionMask>(random.index(masks));
         declared[I] |= host(I);

@@ -184,10 +184,12 @@ TEMPLATE_TEST_CASE_SIG("particles on the faces of the grid", "", ((int Dim, type
   const auto grid = make_grid<Dim, Real>();
   const auto block = allocate_particles<Dim, Real, Device>(1 << Dim);
   edit(block, [&](const auto& p) {  // one in every corner
-    for (int k = 0; k < p.count(); ++k)
+    for (int k = 0; k < p.count(); ++k) {
       for (int i = 0; i < Dim; ++i)
         p.position(k, i) =
             grid.lower[i] + ((k >> i & 1) ? grid.spacing[i] * static_cast<Real>(grid.cells[i]) : Real(0));
+      p.mass(k) = p.volume(k) = Real(1);
+    }
   });
   const Packed<Dim, Real> packed(grid, block);
   packed.check();

@@ -452,8 +452,10 @@ TEMPLATE_TEST_CASE("N1 of wide bases against lists, random bodies and walls", ""
       });
       const auto block = allocate_particles<Dim, double, Device>(static_cast<int>(places.size()));
       edit(block, [&](const auto& particles) {
-        for (int p = 0; p < particles.count(); ++p)
+        for (int p = 0; p < particles.count(); ++p) {
           for (int i = 0; i < Dim; ++i) particles.position(p, i) = places[static_cast<size_t>(p)][i];
+          particles.mass(p) = particles.volume(p) = 1;
+        }
       });
       const auto n = static_cast<size_t>(basis.node_count());
       const BoundaryNodes<Device> tractions("tractions", n), boundary("boundary", n);

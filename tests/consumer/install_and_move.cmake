@@ -1,0 +1,15 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# cmake -DBUILD=<build> -DFROM=<prefix> -DTO=<prefix> -P install_and_move.cmake: installs into one prefix and renames it.
+file(REMOVE_RECURSE "${FROM}" "${TO}")
+execute_process(COMMAND "${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${FROM}" COMMAND_ERROR_IS_FATAL ANY)
+file(RENAME "${FROM}" "${TO}")
+file(GLOB_RECURSE files "${TO}/lib*/cmake/*.cmake")
+foreach(file IN LISTS files)
+  file(STRINGS "${file}" lines)
+  foreach(line IN LISTS lines)
+    string(FIND "${line}" "${FROM}" place)
+    if(NOT place EQUAL -1)
+      message(FATAL_ERROR "${file} remembers ${FROM}: ${line}")
+    endif()
+  endforeach()
+endforeach()
