@@ -252,7 +252,7 @@ std::string check_bins(Scene<Dim, Real>& scene, const Run& run) {
   findings.require(sorted, "the particles are not sorted");
   int cells = scene.size.cells_along;
   for (int i = 1; i < Dim; ++i) cells *= scene.size.cells_across;
-  findings.require(scene.state.occupancy.bins.occupied_count == cells,
+  findings.require(scene.state.occupancy.bins.occupied_count() == cells,
                    "the column's cells are not all occupied");
   return findings.text();
 }

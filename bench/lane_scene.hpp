@@ -19,13 +19,14 @@ void apply_load(const Column<Dim, Real>& column, Lane<Dim, Real>& s) {
   b.everywhere = column.load == Load::free_faces ? 1 : 0;
   b.declared = {};
   if (column.load == Load::end_face) {
-    b.declared = BoundaryNodes<Device>("vsb::declared", static_cast<size_t>(column.basis.node_count()));
-    const auto host = Kokkos::create_mirror_view(b.declared);
+    const BoundaryNodes<Device> declared("vsb::declared", static_cast<size_t>(column.basis.node_count()));
+    const auto host = Kokkos::create_mirror_view(declared);
     for (int node = 0; node < column.basis.node_count(); ++node)
       host(static_cast<size_t>(node)) = column.declared_at(column.basis.grid.node_ijk(node)) ? 1 : 0;
-    Kokkos::deep_copy(b.declared, host);
+    Kokkos::deep_copy(declared, host);
+    b.declared = declared;
   }
-  mark_lanes(Exec(), s.memory.lanes, s.memory.grid.cells, b, true);
+  mark_packed_lanes(Exec(), s);
 }
 
 /// Lanes for the column's particles, which `pack(state)` packs.

@@ -167,7 +167,7 @@ void sort_by_bin(const Exec& exec, ParticleBins<Device>& bins) {
   int occupied = 0;
   Kokkos::parallel_scan("vsb::scan_occupied", over_bins, kernel::ScanOccupied<Device>{bins}, occupied);
   exec.fence();
-  bins.occupied_count = occupied;
+  bins.filled() = occupied;
   Kokkos::parallel_for("vsb::sort_bin", Kokkos::RangePolicy<Exec>(exec, 0, occupied),
                        kernel::SortBin<Device>{bins});
 }

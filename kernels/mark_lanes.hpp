@@ -26,7 +26,7 @@ struct LaneBoundary {
   /// whoever changes the array calls it again.
   Kokkos::View<const TractionMask*, Device> declared;
   TractionMask conservative = 0;  ///< those that act at all active nodes
-  TractionMask all_declared = 0;  ///< of all nodes together; with what follows, as the marks have it
+  TractionMask all_declared = 0;  ///< at any node so far; what follows is that of the marks
   TractionMask marked_everywhere = 0, marked_conservative = 0;
   const TractionMask* marked_declared = nullptr;
   bool up_to_date = false;  ///< whether the above are of some declarations
@@ -198,15 +198,16 @@ void forget_declarations(LaneBoundary<Dim, Device>& b) {
 template <class Exec, int Dim, class Device>
 void take_declarations(const Exec& exec, LaneBoundary<Dim, Device>& b, int grid_nodes) {
   if (declared_as_marked(b)) return;
-  b.all_declared = 0;
   if (b.declared.size() > 0) {
+    TractionMask declared = 0;
     check_rows(
         "LaneBoundary::declared", b.declared.extent(0), grid_nodes,
         "give one mask per node of the grid (of the grid with its ghost layer with B-splines), or none");
     Kokkos::parallel_reduce("vsb::join_declarations", Kokkos::RangePolicy<Exec>(exec, 0, grid_nodes),
                             kernel::JoinDeclarations<Device>{b.declared},
-                            Kokkos::BOr<TractionMask>(b.all_declared));
+                            Kokkos::BOr<TractionMask>(declared));
     exec.fence();
+    b.all_declared |= declared;
   }
   b.all_declared |= b.everywhere;
   b.marked_everywhere = b.everywhere;

@@ -117,18 +117,18 @@ void scatter(const Exec& exec, const std::string& label, Scatter strategy, int p
   if (strategy == Scatter::gathered) {
     detail::check_rows("ParticleBins::order", bins.order.extent(0), particles,
                        "after adding or removing particles call make_state, or allocate_bins, again");
-    if (bins.occupied_count == 0 && particles > 0)
+    if (bins.occupied_count() == 0 && particles > 0)
       detail::refuse(
           "the particles are not sorted by bin: call update_occupancy, or locate_particles and "
           "sort_by_bin, before a sum over them");
-    const auto slots = static_cast<size_t>(bins.occupied_count);
+    const auto slots = static_cast<size_t>(bins.occupied_count());
     const size_t width = static_cast<size_t>(Basis::support * columns);
     auto& sums = workspace.bin_sums;
-    if (sums.extent(0) < slots)
+    if (sums.extent(0) < slots || sums.extent(1) != width)
       sums = typename ScatterWorkspace<Real, Device>::Target(
           Kokkos::view_alloc("vsb::bin_sums", Kokkos::WithoutInitializing), slots + slots / 8, width);
     Kokkos::parallel_for(
-        label, Kokkos::RangePolicy<Exec>(exec, 0, bins.occupied_count),
+        label, Kokkos::RangePolicy<Exec>(exec, 0, bins.occupied_count()),
         kernel::SumBin<Contribution, Basis::support, Real, Device>{contribution, bins, sums});
     Kokkos::parallel_for(label + "/nodes", Kokkos::RangePolicy<Exec>(exec, 0, basis.node_count()),
                          kernel::SumNode<Basis, columns, Real, Device>{basis, bins, sums, target});

@@ -132,7 +132,7 @@ UnsupportedLoad<Dim> find_unsupported_load(const Exec& exec, const Nodes<Dim, Re
   };
 
   kernel::DisjointSets sets(count);
-  for (int s = 0; s < bins.occupied_count; ++s) {
+  for (int s = 0; s < bins.occupied_count(); ++s) {
     int first = -1;
     for (int a = 0; a < Basis::support; ++a) {
       const int I = basis.node_of_bin(occupied(s), a);

@@ -25,7 +25,7 @@ struct Occupancy {
   TractionMask conservative = 0;    ///< the tractions that act at all active nodes, where they are declared
   BoundaryNodes<Device> marked;     ///< [node]: `tractions` as the last update found them
   TractionMask marked_conservative = 0;
-  TractionMask declared = 0;  ///< the tractions in `marked`, of all nodes together
+  TractionMask declared = 0;  ///< the tractions that were declared at any node so far
   int boundary_node_count = 0;
   double minimum_fill = 0;  ///< of a cell's volume, see set_fill_criterion; 0: no criterion
 };
@@ -121,9 +121,12 @@ int update_occupancy(const Exec& exec, const Particles<Dim, Real, Device>& parti
   where.changed = where.changed || o.conservative != o.marked_conservative;
   if (where.changed) {
     sort_by_bin(exec, o.bins);
+    TractionMask declared = 0;
     Kokkos::parallel_reduce("vsb::take_declarations", Kokkos::RangePolicy<Exec>(exec, 0, nodes),
                             kernel::TakeDeclaration<Device>{o.tractions, o.marked},
-                            Kokkos::BOr<TractionMask>(o.declared));
+                            Kokkos::BOr<TractionMask>(declared));
+    exec.fence();
+    o.declared |= declared;
     o.marked_conservative = o.conservative;
   }
   const bool refilled = o.minimum_fill > 0 && mark_underfilled_cells(exec, particles, o.bins, basis,

@@ -19,7 +19,9 @@ struct ParticleBins {
   Ints cursor;    ///< [bins]: scratch of the sort
   Ints slot;      ///< [bins]: number of the bin among the occupied ones, -1 where it is empty
   Ints occupied;  ///< [bins]: the occupied bins, in increasing order
-  int occupied_count = 0;
+  Kokkos::View<int, Kokkos::HostSpace> filled;  ///< how many are occupied; shared by copies, as the rest is
+
+  int occupied_count() const { return filled.data() == nullptr ? 0 : filled(); }
 };
 
 /// Allocates bins in which no particle has been located yet.
@@ -34,6 +36,7 @@ ParticleBins<Device> allocate_bins(int particles, int bins) {
   result.cursor = Ints("vsb::bin_cursor", b);
   result.slot = Ints("vsb::bin_slot", b);
   result.occupied = Ints("vsb::bin_occupied", b);
+  result.filled = decltype(result.filled)("vsb::bins_filled");
   Kokkos::deep_copy(result.bin, -1);
   return result;
 }

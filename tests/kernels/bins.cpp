@@ -61,7 +61,7 @@ TEST_CASE("a body without particles neither changes nor loses any") {
   CHECK_FALSE(where.changed);
   CHECK(where.lost == -1);
   sort_by_bin(Exec(), bins);
-  CHECK(bins.occupied_count == 0);
+  CHECK(bins.occupied_count() == 0);
 }
 
 TEST_CASE("sort_by_bin agrees with a stable sort, with empty bins and crowded ones") {
@@ -96,7 +96,7 @@ TEST_CASE("sort_by_bin agrees with a stable sort, with empty bins and crowded on
       }
       CHECK(wrong == 0);
       CHECK(offset(c.bins) == c.particles);
-      CHECK(bins.occupied_count == filled);
+      CHECK(bins.occupied_count() == filled);
     }
   }
 }

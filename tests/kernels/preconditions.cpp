@@ -322,7 +322,7 @@ TEST_CASE("tractions declared between steps on cell lanes act after prepare_lane
     host(7) = 0;
   });
   s.prepare();
-  CHECK(s.lanes.boundary.all_declared == 1);
+  CHECK(s.lanes.boundary.all_declared == 3);
   CHECK(count_loaded_nodes(Exec(), s.lanes) == 15);
   CHECK(s.step() == -1);
 }
