@@ -78,6 +78,7 @@ template <class Exec, class Field, class Basis, int Dim, class Real, class Devic
 void subtract_cell_virtual_stress(const Exec& exec, const Nodes<Dim, Real, Device>& nodes,
                                   const BoundaryNodes<Device>& boundary, const Basis& basis,
                                   const Field& virtual_stress) {
+  check_gauss_points(virtual_stress.gauss_points);
   Kokkos::parallel_for(
       "vsb::subtract_cell_virtual_stress", Kokkos::RangePolicy<Exec>(exec, 0, nodes.count()),
       kernel::SubtractCellStress<Field, Basis, Dim, Real, Device>{virtual_stress, basis, boundary, nodes});

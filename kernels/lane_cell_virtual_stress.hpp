@@ -148,6 +148,7 @@ void add_cell_virtual_stress(const Exec& exec, const CellLanes<Dim, Real, Device
                              const LaneBoundary<Dim, Device>& b, const Field& virtual_stress,
                              TractionMask original, int gauss_points) {
   if (original == 0) return;
+  check_gauss_points(gauss_points);
   Kokkos::parallel_for("vsb::add_original_stress", Kokkos::RangePolicy<Exec>(exec, 0, lanes.layers()),
                        kernel::AddOriginalStress<Field, Dim, Real, Device>{
                            {lanes, grid, b.tractions}, nodes, b.bits, virtual_stress, original});

@@ -43,6 +43,8 @@ struct LaneMemory {
   Leavers<Dim, Real, Device> leavers;
   UniformGrid<Dim, Real> grid;
   Walls<Dim> walls;
+  UniformGrid<Dim, Real> packed_grid;  ///< what `grid` and `walls` were when the nodes were numbered
+  Walls<Dim> packed_walls;
   int slack = 1;  ///< slots that a group has to spare
   Reach<Dim> reach;
   Sweeps sweeps = Sweeps::chosen;

@@ -135,6 +135,18 @@ void check_lane_step(const State& s, const Material& material, const Field& next
     refuse("the lanes hold ", s.memory.lanes.state_size,
            " numbers of material state per particle and the material remembers ", remembered,
            ": set LaneState::memory.lanes.state_size, and Particles::material_state, before pack_lanes");
+  bool as_packed = true;
+  for (int i = 0; i < Dim; ++i) {
+    const auto &grid = s.memory.grid, &packed = s.memory.packed_grid;
+    as_packed = as_packed && grid.lower[i] == packed.lower[i] && grid.spacing[i] == packed.spacing[i] &&
+                grid.cells[i] == packed.cells[i];
+    for (const int side : {0, 1})
+      as_packed = as_packed && s.memory.walls.fixed[i][side] == s.memory.packed_walls.fixed[i][side];
+  }
+  if (!as_packed)
+    refuse(
+        "the grid or the walls of the lanes have changed: call unpack_particles before, and pack_lanes and "
+        "prepare_lane_step after such a change");
   if (!s.prepared)
     refuse("no step is prepared: call prepare_lane_step after pack_lanes, with the load of the step to come");
   if (!declared_as_marked(s.boundary))

@@ -231,6 +231,8 @@ void number_nodes(const Exec& exec, LaneMemory<Dim, Real, Device>& m) {
                           kernel::NumberNodes<Dim, Real, Device>{lanes}, node_count);
   exec.fence();
   lanes.node_count = node_count;
+  m.packed_grid = m.grid;
+  m.packed_walls = m.walls;
   if (static_cast<int>(m.nodes.data.extent(0)) < node_count) {
     m.nodes.data = decltype(m.nodes.data)(
         "vsb::lane_nodes", static_cast<size_t>(padded_rows<Real>(node_count + node_count / 16)),

@@ -103,6 +103,13 @@ void check_masses(const Exec& exec, const Particles<Dim, Real, Device>& particle
                    "Particles::volume (m^3; per unit of the directions left out in 1D and 2D) first");
 }
 
+/// Refuses numbers of Gauss points for which there is no rule.
+inline void check_gauss_points(int per_direction) {
+  if (per_direction < 1 || per_direction > 4)
+    detail::refuse("the original method has ", per_direction,
+                   " Gauss points per direction: allowed are 1 to 4");
+}
+
 /// Refuses a load that does not go with what is declared: `declared` are the tractions declared at nodes,
 /// `beside` says whether some act beside the nodes of the modified method, on surface points for example.
 template <class Field>

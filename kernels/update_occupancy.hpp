@@ -113,6 +113,8 @@ int update_occupancy(const Exec& exec, const Particles<Dim, Real, Device>& parti
   const int n = particles.count(), nodes = basis.node_count();
   detail::check_rows("Occupancy::tractions", o.tractions.extent(0), nodes,
                      "make the state, or the occupancy, with the basis of the step");
+  if (o.minimum_fill > 0 && o.cells.underfilled.size() == 0)
+    detail::refuse("Occupancy::minimum_fill is set without the cells that it needs: call set_fill_criterion");
   using Look = kernel::LocateAndCompare<Basis, Particles<Dim, Real, Device>, Device>;
   auto where =
       detail::whereabouts(exec, Look{{particles, basis, o.bins.bin}, o.tractions, o.marked, n, nodes},

@@ -91,7 +91,7 @@ struct TractionFields : ActsOnParticles {
   TractionMask balanced = 0;  ///< the tractions to which `balance` belongs, all at the same nodes
   RigidBodyForce<Dim, Real> balance = RigidBodyForce<Dim, Real>::zero();  ///< see kernels/self_balance.hpp
 
-  TractionMask known() const { return first_tractions(count); }
+  TractionMask known() const { return first_tractions(count, capacity); }
   TractionFields without(TractionMask tractions) const {
     auto rest = *this;
     for (int k = 0; k < count; ++k)
@@ -122,7 +122,7 @@ struct AffineVirtualStress : ActsOnParticles {
   Real factor[capacity];  ///< on the field of traction k, at this time
   int count = 0;
 
-  TractionMask known() const { return first_tractions(count); }
+  TractionMask known() const { return first_tractions(count, capacity); }
   AffineVirtualStress without(TractionMask tractions) const {
     auto rest = *this;
     for (int k = 0; k < count; ++k)

@@ -15,6 +15,8 @@
 /// switches node by node.
 #pragma once
 
+#include <stdexcept>
+#include <string>
 #include <vsb/views/masks.hpp>
 #include <vsb/views/tensor.hpp>
 
@@ -31,9 +33,12 @@ struct VirtualStressValue {
   }
 };
 
-/// Tractions 0, ..., count - 1.
-inline TractionMask first_tractions(int count) {
-  return count <= 0 ? 0 : ~TractionMask(0) >> (count < 32 ? 32 - count : 0);
+/// Tractions 0, ..., count - 1. Throws std::invalid_argument for more than a field has room for.
+inline TractionMask first_tractions(int count, int capacity) {
+  if (count < 0 || count > capacity)
+    throw std::invalid_argument("vsb: the `count` of a load is " + std::to_string(count) +
+                                "; allowed are 0 to " + std::to_string(capacity) + " tractions");
+  return count == 0 ? 0 : ~TractionMask(0) >> (32 - count);
 }
 
 /// What most fields have in common: they act on particles, and on all of them.
@@ -69,7 +74,7 @@ struct UniformVirtualStress : ActsOnParticles {
   SymmetricTensor<Dim, Real> stress[capacity];  ///< sbar of traction k at this time, Pa, tension positive
   int count = 0;
 
-  TractionMask known() const { return first_tractions(count); }
+  TractionMask known() const { return first_tractions(count, capacity); }
   UniformVirtualStress without(TractionMask tractions) const {
     auto rest = *this;
     for (int k = 0; k < count; ++k)

@@ -139,6 +139,8 @@ TEST_CASE("a step of the particle kernels names what is missing") {
       {[](S& s) { s.options.gravity[1] = not_a_number; }, "StepOptions::gravity is nan"},
       {[](S& s) { s.load.count = 0; }, "the load has no traction: set its `count`"},
       {[](S& s) { s.load = {}; }, "the load has no traction: set its `count`"},
+      {[](S& s) { s.load.count = 9; }, "allowed are 0 to 8 tractions"},
+      {[](S& s) { s.state.occupancy.minimum_fill = 0.5; }, "call set_fill_criterion"},
       {[](S& s) { s.declare(0); }, "no traction is declared at any node"},
       {[](S& s) { s.declare(5); }, "traction 2 is declared at nodes, but the load has no stress for it"},
       {[](S& s) { s.bodies.clear(); }, "particle 0 of 36 is in no body"},
@@ -263,6 +265,8 @@ TEMPLATE_TEST_CASE("a step on cell lanes names what is missing", "", (LaneState<
       {[](S& s) { s.options = {}; }, "StepOptions::dt is 0"},
       {[](S& s) { s.load.count = 0; }, "the load has no traction: set its `count`"},
       {[](S& s) { s.material.lambda = not_a_number; }, "constrained modulus"},
+      {[](S& s) { s.lanes.memory.walls.fixed[1][0] = 2; }, "call unpack_particles before"},
+      {[](S& s) { s.lanes.memory.grid.lower[0] = 0.1; }, "call unpack_particles before"},
       {[](S& s) { s.lanes.boundary.everywhere = 3; }, "call prepare_lane_step again"},
       {[](S& s) { s.lanes.boundary.conservative = 1; }, "call prepare_lane_step again"},
       {[](S& s) { s.lanes.boundary.declared = BoundaryNodes<Device>("vsb::declared", 36); },
@@ -337,6 +341,12 @@ TEST_CASE("loads beside the sweeps cannot be left out, added twice, or counted t
   CHECK_THROWS_WITH(s.step(), containing("call add_lane_loads after prepare_lane_step"));
   CHECK(add(s) == -1);
   CHECK_THROWS_WITH(add(s), containing("call it once"));
+  S many;
+  many.lanes.original = 1;
+  many.lanes.gauss_points = 0;
+  many.pack();
+  many.prepare();
+  CHECK_THROWS_WITH(add(many), containing("0 Gauss points per direction"));
   CHECK(s.step() == -1);
   CHECK_THROWS_WITH(s.step(), containing("call add_lane_loads"));
 
@@ -385,9 +395,9 @@ TEST_CASE("fields of any kind leave tractions out") {
     affine.factor[k] = 1;
   }
   CHECK(affine.without(1).at(Vector<2, double>{{2, 0}}, 3).stress[0] == -2);
-  CHECK(first_tractions(0) == 0);
-  CHECK(first_tractions(3) == 7);
-  CHECK(first_tractions(32) == ~TractionMask(0));
+  CHECK(first_tractions(0, 8) == 0);
+  CHECK(first_tractions(3, 8) == 7);
+  CHECK(first_tractions(32, 32) == ~TractionMask(0));
 }
 
 #endif
