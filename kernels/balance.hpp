@@ -2,17 +2,15 @@
 /// \file
 /// How far a state is from equilibrium, and the resultant of its tractions.
 ///   unbalanced U = |f| over free components;   internal I = |f| without virtual stress, over all components;
-///   force ratio U / I;   net force = sum_I g_I, net torque = sum_I x_I x g_I about the origin, with g_I =
-///   f_I with - f_I without tractions, over free components: what acts on a prescribed one is the support's.
-///   The net force counts what surface points in void cells give to nodes without mass; the unbalanced force
-///   does not, since it acts on nothing;
+///   force ratio U / I;   net force and torque: kernels/resultant.hpp. They count what acts on prescribed
+///   components, and what surface points in void cells give to nodes without mass; the unbalanced force does
+///   not: the support takes up the one, and the other acts on nothing;
 ///   kinetic energy sum_I |p_I|^2 / (2 m_I);   strain energy scale sum_p V |sigma|^2 / (2 M).
 /// The kinetic energy is the grid's: velocities of FLIP particles that cancel at every node move nothing, and
 /// no damping ever reaches them.
 #pragma once
 
-#include <vsb/kernels/ordered_sum.hpp>
-#include <vsb/kernels/step.hpp>
+#include <vsb/kernels/resultant.hpp>
 #include <vsb/physics/explicit_dynamics.hpp>
 
 namespace vsb {
@@ -32,48 +30,36 @@ struct Balance {
 
 namespace kernel {
 
-/// What a node adds to the sums: squares of the unbalanced and of the internal force, kinetic energy, net
-/// force, net torque.
-template <int Dim>
-using BalanceSums = Vector<3 + Dim + 3, double>;
+/// What a node adds to the sums: squares of the unbalanced and of the internal force, kinetic energy.
+using BalanceSums = Vector<3, double>;
 
-/// Adds the node at x with mass m, momentum p, force f, and force g without tractions.
-template <int Dim, class Real>
-KOKKOS_FUNCTION void add_node_balance(const Vector<Dim, Real>& place, ComponentMask fixed_components,
-                                      double m, const Vector<Dim, double>& momentum,
-                                      const Vector<Dim, double>& force, const Vector<Dim, double>& bare,
-                                      BalanceSums<Dim>& sum) {
-  Vector<3, double> traction = Vector<3, double>::zero(), x = traction;
+/// Adds a node with mass m, momentum p, force f, and force g without tractions.
+template <int Dim>
+KOKKOS_FUNCTION void add_node_balance(ComponentMask fixed_components, double m,
+                                      const Vector<Dim, double>& momentum, const Vector<Dim, double>& force,
+                                      const Vector<Dim, double>& bare, BalanceSums& sum) {
   for (int i = 0; i < Dim; ++i) {
     const double f = force[i], g = bare[i], p = momentum[i];
     const bool fixed = fixed_components >> i & 1;
     if (!fixed && has_mass(m)) sum[0] += f * f;
     sum[1] += g * g;
     if (!fixed && has_mass(m)) sum[2] += 0.5 * p * p / m;
-    if (!fixed) traction[i] = f - g;
-    x[i] = place[i];
-    sum[3 + i] += traction[i];
-  }
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    sum[3 + Dim + i] += x[j] * traction[k] - x[k] * traction[j];
   }
 }
 
-template <class Grid, int Dim, class Real, class Device>
+template <int Dim, class Real, class Device>
 struct NodeBalance {
-  Grid grid;
   Nodes<Dim, Real, Device> nodes;                  ///< sums with virtual stress
   typename Nodes<Dim, Real, Device>::Fields bare;  ///< sums without
 
-  KOKKOS_FUNCTION void operator()(int I, BalanceSums<Dim>& sum) const {
+  KOKKOS_FUNCTION void operator()(int I, BalanceSums& sum) const {
     Vector<Dim, double> p, f, g;
     for (int i = 0; i < Dim; ++i) {
       p[i] = nodes.momentum(I, i);
       f[i] = nodes.force(I, i);
       g[i] = bare(I, 1 + Dim + i);
     }
-    add_node_balance(grid.node_position(I), nodes.fixed_components(I), nodes.mass(I), p, f, g, sum);
+    add_node_balance(nodes.fixed_components(I), nodes.mass(I), p, f, g, sum);
   }
 };
 
@@ -102,14 +88,10 @@ struct StrainEnergy {
 
 namespace detail {
 
-/// All but the strain energy, from the nodes' sums.
-template <int Size>
-Balance<Size - 6> balance_of(const Vector<Size, double>& sums) {
-  constexpr int Dim = Size - 6;
-  Balance<Dim> result{math::sqrt(sums[0]), math::sqrt(sums[1]), {}, {}, sums[2], 0};
-  for (int i = 0; i < Dim; ++i) result.net_force[i] = sums[3 + i];
-  for (int i = 0; i < 3; ++i) result.net_torque[i] = sums[3 + Dim + i];
-  return result;
+/// All but the strain energy.
+template <int Dim>
+Balance<Dim> balance_of(const kernel::BalanceSums& sums, const TractionResultant<Dim>& tractions) {
+  return {math::sqrt(sums[0]), math::sqrt(sums[1]), tractions.force, tractions.torque, sums[2], 0};
 }
 
 }  // namespace detail
@@ -127,9 +109,9 @@ Balance<Dim> balance(const Exec& exec, State<Dim, Real, Device>& s, const std::v
   fold_ghost_nodes(exec, basis, bare.sums, 1);
   assemble_forces(exec, s.particles, s.occupancy, s.surface, s.nodes, s.sums_workspace, basis, virtual_stress,
                   options.gravity, options.scatter);
-  using Functor = kernel::NodeBalance<decltype(basis.grid), Dim, Real, Device>;
-  auto result = detail::balance_of(ordered_sum<kernel::BalanceSums<Dim>::size, Device>(
-      exec, "vsb::node_balance", s.nodes.count(), Functor{basis.grid, s.nodes, bare.sums}));
+  const auto sums = ordered_sum<kernel::BalanceSums::size, Device>(
+      exec, "vsb::node_balance", s.nodes.count(), kernel::NodeBalance<Dim, Real, Device>{s.nodes, bare.sums});
+  auto result = detail::balance_of(sums, resultant(exec, s, basis, virtual_stress));
   for (const auto& body : bodies) {
     const double modulus =
         std::visit([](const auto& m) { return double(m.constrained_modulus()); }, body.material);

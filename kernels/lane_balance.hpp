@@ -5,7 +5,7 @@
 #pragma once
 
 #include <vsb/kernels/balance.hpp>
-#include <vsb/kernels/lane_step.hpp>
+#include <vsb/kernels/lane_resultant.hpp>
 
 namespace vsb {
 
@@ -39,22 +39,15 @@ struct KeepForce {
 template <int Dim, class Real, class Device>
 struct LaneNodeBalance {
   CellLanes<Dim, Real, Device> lanes;
-  UniformGrid<Dim, Real> grid;
   LaneNodeSums<Dim, Real, Device> sums;                   ///< with virtual stress
   Kokkos::View<Real**, Kokkos::LayoutLeft, Device> bare;  ///< [node][Dim], force without, N
 
-  KOKKOS_FUNCTION void operator()(int place, BalanceSums<Dim>& sum) const {
+  KOKKOS_FUNCTION void operator()(int place, BalanceSums& sum) const {
     constexpr int width = Lanes<Real>::width;
     const int chunk = lanes.chunk_at(place);
     if (chunk < 0) return;
-    const int per_row = lanes.groups_per_row() + 1, row = place / per_row;
-    Vector<Dim, int> ijk;
-    for (int i = 1; i < Dim; ++i)
-      ijk[i] = lanes.box.first[i] +
-               (i == 1 && Dim == 3 ? row % lanes.node_rows_per_plane() : row / lanes.node_rows_per_plane());
     for (int l = 0; l < width; ++l) {
       const int node = chunk * width + l;
-      ijk[0] = lanes.box.first[0] + place % per_row * width + l;
       ComponentMask fixed = 0;
       Vector<Dim, double> p, f, g;
       for (int i = 0; i < Dim; ++i) {
@@ -63,7 +56,7 @@ struct LaneNodeBalance {
         f[i] = sums.force(node, i);
         g[i] = bare(node, i);
       }
-      add_node_balance(grid.map(ijk, Vector<Dim, Real>::zero()).x, fixed, sums.sum(0, node), p, f, g, sum);
+      add_node_balance(fixed, sums.sum(0, node), p, f, g, sum);
     }
   }
 };
@@ -105,9 +98,11 @@ Balance<Dim> balance(const Exec& exec, const LaneState<Dim, Real, Device>& s, do
   Kokkos::parallel_for("vsb::keep_force", Kokkos::RangePolicy<Exec>(exec, 0, s.memory.lanes.node_count),
                        kernel::KeepForce<Dim, Real, Device>{sums, bare});
   if (Field::loaded) detail::sum_lanes(exec, apart, virtual_stress);
-  auto result = detail::balance_of(ordered_sum<kernel::BalanceSums<Dim>::size, Device>(
-      exec, "vsb::lane_node_balance", static_cast<int>(s.memory.lanes.chunk_at.extent(0)),
-      kernel::LaneNodeBalance<Dim, Real, Device>{s.memory.lanes, s.memory.grid, sums, bare}));
+  auto result = detail::balance_of(
+      ordered_sum<kernel::BalanceSums::size, Device>(
+          exec, "vsb::lane_node_balance", static_cast<int>(s.memory.lanes.chunk_at.extent(0)),
+          kernel::LaneNodeBalance<Dim, Real, Device>{s.memory.lanes, sums, bare}),
+      resultant(exec, s, virtual_stress));
   result.strain_energy =
       ordered_sum<1, Device>(exec, "vsb::lane_strain_energy", s.memory.lanes.group_count,
                              kernel::LaneStrainEnergy<Dim, Real, Device>{s.memory.lanes, modulus})[0];
