@@ -95,6 +95,7 @@ VoidFilterEffect void_filter_effect(const Exec& exec, const Particles<Dim, Real,
                                     TractionMask conservative = 0) {
   auto unfiltered = allocate_cell_bits<Device>(basis.grid);
   unfiltered.underfilled = bits.underfilled;
+  unfiltered.carried = bits.carried;
   const BoundaryNodes<Device> boundary("vsb::unfiltered_boundary_nodes", tractions.extent(0));
   VoidFilterEffect effect;
   effect.dropped_nodes =

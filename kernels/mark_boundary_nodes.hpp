@@ -9,6 +9,10 @@
 /// Underfilled cells (kernels/mark_underfilled_cells.hpp), where they are asked for, count as cells of E2;
 /// the void filter (kernels/filter_voids.hpp), where it is asked for, leaves void cells out of E1.
 ///
+/// A traction acts at the nodes of N1 at which it is declared: at places of the grid, or, where its surface
+/// moves with the material (views/carried_tractions.hpp), at the active nodes whose support overlaps a cell
+/// that holds a particle that carries it.
+///
 /// Cells and nodes are rows of bits along x, 64 to a word, and every "touches" is a dilation of bit rows.
 /// There are no cells beyond a face of the grid, so a fixed or symmetry plane there makes no boundary; a free
 /// boundary needs a void cell beyond it. The ghost cells beyond a wall do not exist for this algorithm: they
@@ -17,6 +21,9 @@
 
 #include <vsb/kernels/locate_particles.hpp>
 #include <vsb/kernels/mirror_nodes.hpp>
+#include <vsb/physics/cell_numbering.hpp>
+#include <vsb/views/carried_tractions.hpp>
+#include <vsb/views/particles.hpp>
 
 namespace vsb {
 
@@ -30,6 +37,7 @@ struct CellBits {
   Rows boundary;     ///< [row][word]: E1 and E2
   Rows underfilled;  ///< [row][word]: cells of E2 for want of particles; no rows without a fill criterion
   Rows outside;      ///< [row][word]: void cells that may be of E1; no rows without a void filter
+  CarriedTractions<Device> carried;  ///< those whose surface moves with the material
 };
 
 namespace kernel {
@@ -96,8 +104,12 @@ CellBits<Device> allocate_cell_bits(const CellNumbering<Dim>& grid) {
   const BitRows<Dim> rows(grid);
   const auto r = static_cast<size_t>(rows.cell_row_count()), w = static_cast<size_t>(rows.words);
   using Rows = typename CellBits<Device>::Rows;
-  return {Rows("vsb::cells_occupied", r, w), Rows("vsb::cells_exterior", r, w),
-          Rows("vsb::cells_boundary", r, w), Rows(), Rows()};
+  return {Rows("vsb::cells_occupied", r, w),
+          Rows("vsb::cells_exterior", r, w),
+          Rows("vsb::cells_boundary", r, w),
+          Rows(),
+          Rows(),
+          {}};
 }
 
 namespace kernel {
@@ -113,6 +125,29 @@ struct MarkOccupied {
     const auto cell = grid.cell_containing(particles.position_of(p));
     Kokkos::atomic_fetch_or(&occupied(grid.row_index(cell), cell[0] / 64), std::uint64_t(1)
                                                                                << (cell[0] % 64));
+  }
+};
+
+/// Marks cell x of a row for some tractions.
+template <class Device>
+KOKKOS_INLINE_FUNCTION void mark_carrying_cell(const CarriedTractions<Device>& c, TractionMask tractions,
+                                               int row, int x) {
+  for (int k = 0; k < c.count(); ++k)
+    if (tractions >> k & 1u) Kokkos::atomic_fetch_or(&c.cells(k, row, x / 64), std::uint64_t(1) << (x % 64));
+}
+
+/// One particle: marks its cell for the tractions that it carries.
+template <class Grid, int Dim, class Real, class Device>
+struct MarkCarrying {
+  Particles<Dim, Real, Device> particles;
+  Grid grid;
+  CarriedTractions<Device> carried;
+
+  KOKKOS_FUNCTION void operator()(int p) const {
+    const TractionMask mask = carried.particle(p);
+    if (mask == 0) return;
+    const auto cell = grid.cell_containing(particles.position_of(p));
+    mark_carrying_cell(carried, mask, grid.row_index(cell), cell[0]);
   }
 };
 
@@ -193,6 +228,16 @@ struct AddUnderfilled {
   }
 };
 
+/// Word w of row r of nodes: where carried traction k is declared. reach: of the basis.
+template <int Dim, class Device>
+KOKKOS_INLINE_FUNCTION std::uint64_t carried_nodes(const CarriedTractions<Device>& carried, int k,
+                                                   const BitRows<Dim>& tiling, const Vector<2, int>& at,
+                                                   int w, int reach) {
+  const auto cells = [&](int row, int word) { return carried.cells(k, row, word); };
+  return dilated_word(cells, tiling, w, {{at[0] - 1 - reach, at[1] - 1 - reach}},
+                      {{at[0] + reach, at[1] + reach}}, reach, 1 + reach);
+}
+
 /// N1: one word of nodes; counts those at which a traction acts. Ghost nodes beyond walls are no part of it.
 template <int Dim, class Device>
 struct MarkNodes {
@@ -210,10 +255,13 @@ struct MarkNodes {
     const std::uint64_t active =
         tiling.existing(at, w, 1) & dilated_word(bits.occupied, tiling, w, from, to, reach, 1 + reach);
     const std::uint64_t marked = active & dilated_word(bits.boundary, tiling, w, from, to, reach, 1 + reach);
+    const auto& carried = bits.carried;
+    for (int k = 0; k < carried.count(); ++k)
+      carried.nodes(k, r, w) = carried_nodes(carried, k, tiling, at, w, reach);
     const int nodes = math::min(tiling.cells_x + 1 - 64 * w, 64);
     for (int b = 0; b < nodes; ++b) {
       const int node = r * (tiling.cells_x + 1) + 64 * w + b;
-      boundary(node) = marked >> b & 1   ? tractions(node)
+      boundary(node) = marked >> b & 1   ? tractions(node) | carried.at(r, 64 * w + b)
                        : active >> b & 1 ? tractions(node) & conservative
                                          : 0;
       if (boundary(node) != 0) ++count;
@@ -232,6 +280,16 @@ void mark_occupied_cells(const Exec& exec, const Particles<Dim, Real, Device>& p
                        kernel::MarkOccupied<Grid, Dim, Real, Device>{particles, grid, bits.occupied});
 }
 
+/// Overwrites the sets of cells that hold carriers of tractions; all particles must lie in the grid.
+template <class Exec, class Grid, int Dim, class Real, class Device>
+void mark_carrying_cells(const Exec& exec, const Particles<Dim, Real, Device>& particles,
+                         const CarriedTractions<Device>& carried, const Grid& grid) {
+  if (!carried.any()) return;
+  Kokkos::deep_copy(exec, carried.cells, std::uint64_t(0));
+  Kokkos::parallel_for("vsb::mark_carrying", Kokkos::RangePolicy<Exec>(exec, 0, particles.count()),
+                       kernel::MarkCarrying<Grid, Dim, Real, Device>{particles, grid, carried});
+}
+
 /// What mark_boundary_nodes does, for particles that are known to lie in the grid.
 template <class Exec, class Basis, int Dim, class Real, class Device>
 int mark_boundary_of_located(const Exec& exec, const Particles<Dim, Real, Device>& particles,
@@ -242,6 +300,7 @@ int mark_boundary_of_located(const Exec& exec, const Particles<Dim, Real, Device
   const Kokkos::RangePolicy<Exec> over_cell_words(exec, 0, tiling.cell_row_count() * tiling.words);
   const Kokkos::RangePolicy<Exec> over_node_words(exec, 0, tiling.node_row_count() * tiling.words);
   mark_occupied_cells(exec, particles, bits, basis.grid);
+  mark_carrying_cells(exec, particles, bits.carried, basis.grid);
   Kokkos::parallel_for("vsb::find_exterior_cells", over_cell_words,
                        kernel::FindExterior<Dim, Device>{bits, tiling});
   if (bits.outside.size() > 0)
@@ -262,10 +321,10 @@ int mark_boundary_of_located(const Exec& exec, const Particles<Dim, Real, Device
 }
 
 /// Overwrites boundary[node] with tractions[node] at the nodes of N1 and with 0 elsewhere. tractions[node]
-/// says which tractions are declared at the place of a node (bit k: traction k); those of `conservative` act
-/// at all active nodes, of N1 or not. Reads positions alone. Returns the number of nodes, ghost nodes aside,
-/// at which a traction acts; waits for the device. Throws std::invalid_argument for a particle outside the
-/// grid or at NaN.
+/// says which tractions are declared at the place of a node (bit k: traction k), beside those that particles
+/// carry (bits.carried); those of `conservative` act at all active nodes, of N1 or not. Reads positions alone.
+/// Returns the number of nodes, ghost nodes aside, at which a traction acts; waits for the device. Throws
+/// std::invalid_argument for a particle outside the grid or at NaN.
 template <class Exec, class Basis, int Dim, class Real, class Device>
 int mark_boundary_nodes(const Exec& exec, const Particles<Dim, Real, Device>& particles,
                         const CellBits<Device>& bits, const Basis& basis,

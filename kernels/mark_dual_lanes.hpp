@@ -91,7 +91,7 @@ struct CountMarkedNodes {
         if ((mark.boundary.active(r, w) >> b & 1) == 0) continue;
         const TractionMask acting =
             mark.boundary.marked(r, w) >> b & 1 ? ~TractionMask(0) : mark.boundary.conservative;
-        if ((acting & mark.declared(64 * w + b, at)) != 0) ++count;
+        if ((acting & mark.declared(r, 64 * w + b, at)) != 0) ++count;
       }
   }
 };
@@ -114,7 +114,8 @@ BitRows<Dim> dual_tiling(const CellLanes<Dim, Real, Device>& lanes, const Vector
   return tiling;
 }
 
-/// Brings bits.occupied up to date; whether it changed. Waits for the device.
+/// Brings bits.occupied, and where tractions are carried, up to date; whether that may have changed. Waits
+/// for the device.
 template <class Exec, int Dim, class Real, class Device>
 bool update_dual_occupied(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes,
                           LaneCorners<Device>& corners, const LaneBoundary<Dim, Device>& b) {
@@ -126,8 +127,9 @@ bool update_dual_occupied(const Exec& exec, const CellLanes<Dim, Real, Device>& 
   Kokkos::parallel_reduce("vsb::occupy_dual_lanes", Kokkos::RangePolicy<Exec>(exec, 0, lanes.row_count()),
                           kernel::OccupyDualLanes<Dim, Real, Device>{lanes, corners, b.bits.occupied},
                           changes);
+  const bool carried = update_carrying(exec, lanes, b.bits.carried);
   exec.fence();
-  return changes > 0;
+  return carried || changes > 0;
 }
 
 /// Cells of the grid with its ghost layer, at whose nodes tractions are declared.

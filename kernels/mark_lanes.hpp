@@ -75,7 +75,9 @@ struct MarkLaneNodes {
                                                                             from, to, reach, 1 + reach);
       const std::uint64_t marked =
           active & dilated_word(boundary.bits.boundary, tiling, w, from, to, reach, 1 + reach);
-      if (!anew && marked == boundary.marked(r, w) && active == boundary.active(r, w)) continue;
+      const bool carried_anew = declare_carried(r, w, at);
+      if (!anew && !carried_anew && marked == boundary.marked(r, w) && active == boundary.active(r, w))
+        continue;
       boundary.marked(r, w) = marked;
       boundary.active(r, w) = active;
       boundary.changed(r) = 1;
@@ -94,16 +96,50 @@ struct MarkLaneNodes {
       const TractionMask here = marked >> b & 1   ? ~TractionMask(0)
                                 : active >> b & 1 ? boundary.conservative
                                                   : 0;
-      boundary.tractions(chunk * width + x % width) = here == 0 ? 0 : here & declared(x, at);
+      boundary.tractions(chunk * width + x % width) = here == 0 ? 0 : here & declared(r, x, at);
     }
   }
-  KOKKOS_FUNCTION TractionMask declared(int x, const Vector<2, int>& at) const {
-    TractionMask mask = boundary.everywhere;
+  /// Word w of the carried tractions; whether it changed.
+  KOKKOS_FUNCTION bool declare_carried(int r, int w, const Vector<2, int>& at) const {
+    const auto& carried = boundary.bits.carried;
+    bool changed = false;
+    for (int k = 0; k < carried.count(); ++k) {
+      const std::uint64_t bits = carried_nodes(carried, k, tiling, at, w, reach);
+      changed = changed || bits != carried.nodes(k, r, w);
+      carried.nodes(k, r, w) = bits;
+    }
+    return changed;
+  }
+  KOKKOS_FUNCTION TractionMask declared(int r, int x, const Vector<2, int>& at) const {
+    TractionMask mask = boundary.everywhere | boundary.bits.carried.at(r, x);
     if (boundary.declared.size() == 0) return mask;
     int node = 0;
     for (int i = Dim - 1; i >= 0; --i)
       node = node * (grid_cells[i] + 1) + lanes.box.first[i] + (i == 0 ? x : at[i > 0 ? i - 1 : 0]);
     return mask | boundary.declared(node);
+  }
+};
+
+/// One group: marks the cells with particles that carry tractions, of the scene's grid where cells are dual
+/// ones (see mark_dual_lanes.hpp).
+template <int Dim, class Real, class Device>
+struct MarkCarryingLanes {
+  CellLanes<Dim, Real, Device> lanes;
+  CarriedTractions<Device> carried;
+
+  KOKKOS_FUNCTION void operator()(int g) const {
+    const auto& group = lanes.groups(g);
+    for (size_t e = lanes.begin(group); e < lanes.end(group); ++e) {
+      const TractionMask mask = lanes.id(e) < 0 ? 0 : carried.particle(lanes.id(e));
+      if (mask == 0) continue;
+      const int x = group.x * lanes.width + static_cast<int>(e % lanes.width);
+      const int row = group.row + upper(e, 1) + (Dim == 3 ? upper(e, 2) * lanes.rows_per_layer() : 0);
+      mark_carrying_cell(carried, mask, row, x + upper(e, 0));
+    }
+  }
+  /// Whether a particle is in the upper half of its dual cell.
+  KOKKOS_FUNCTION int upper(size_t e, int axis) const {
+    return lanes.dual && axis < Dim && *lanes.at(lanes.xi_column + axis, e) >= Real(0.5) ? 1 : 0;
   }
 };
 
@@ -236,21 +272,35 @@ void fit_boundary(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes, L
     b.changed = decltype(b.changed)("vsb::box_changed", node_rows);
     b.stale = decltype(b.stale)("vsb::stale_layers", static_cast<size_t>(lanes.layers()));
   }
+  fit_carried(b.bits.carried, cell_rows, node_rows, words);
   if (b.tractions.extent(0) < nodes)
     b.tractions = BoundaryNodes<Device>("vsb::lane_tractions", nodes + nodes / 16);
   else
     Kokkos::deep_copy(exec, b.tractions, TractionMask(0));
 }
 
-/// Brings bits.occupied up to date; whether it changed. Waits for the device.
+/// Brings the cells with carriers of tractions up to date; whether there are such tractions.
+template <class Exec, int Dim, class Real, class Device>
+bool update_carrying(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes,
+                     const CarriedTractions<Device>& carried) {
+  if (!carried.any()) return false;
+  Kokkos::deep_copy(exec, carried.cells, std::uint64_t(0));
+  Kokkos::parallel_for("vsb::mark_carrying_lanes", Kokkos::RangePolicy<Exec>(exec, 0, lanes.group_count),
+                       kernel::MarkCarryingLanes<Dim, Real, Device>{lanes, carried});
+  return true;
+}
+
+/// Brings bits.occupied, and where tractions are carried, up to date; whether that may have changed. Waits
+/// for the device.
 template <class Exec, int Dim, class Real, class Device>
 bool update_occupied(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes,
                      const LaneBoundary<Dim, Device>& b) {
+  const bool carried = update_carrying(exec, lanes, b.bits.carried);
   int changes = 0;
   Kokkos::parallel_reduce("vsb::occupy_lanes", Kokkos::RangePolicy<Exec>(exec, 0, lanes.row_count()),
                           kernel::OccupyLanes<Dim, Real, Device>{lanes, b.bits.occupied}, changes);
   exec.fence();
-  return changes > 0;
+  return carried || changes > 0;
 }
 
 /// From bits.occupied, which `tiling` describes, to the tractions of nodes. anew: after packing anew, or
@@ -275,17 +325,23 @@ void load_groups(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes, La
                        kernel::LoadGroup<Dim, Real, Device>{lanes, b});
 }
 
+/// The cells of the box, which may reach over the faces of the grid, as rows of bits.
+template <int Dim, class Real, class Device>
+BitRows<Dim> box_tiling(const CellLanes<Dim, Real, Device>& lanes, const Vector<Dim, int>& grid_cells) {
+  BitRows<Dim> tiling(CellNumbering<Dim>{lanes.box.cells});
+  for (int i = 0; i < Dim; ++i) {
+    tiling.first[i] = math::max(0, -lanes.box.first[i]);
+    tiling.last[i] = math::min(lanes.box.cells[i], grid_cells[i] - lanes.box.first[i]) - 1;
+  }
+  return tiling;
+}
+
 /// From bits.occupied to the loads of nodes and groups. anew: after packing anew, or where a declaration
 /// changed.
 template <class Exec, int Dim, class Real, class Device>
 void mark_lanes(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes,
                 const Vector<Dim, int>& grid_cells, LaneBoundary<Dim, Device>& b, bool anew) {
-  BitRows<Dim> tiling(CellNumbering<Dim>{lanes.box.cells});
-  for (int i = 0; i < Dim; ++i) {  // the box may reach over the faces of the grid
-    tiling.first[i] = math::max(0, -lanes.box.first[i]);
-    tiling.last[i] = math::min(lanes.box.cells[i], grid_cells[i] - lanes.box.first[i]) - 1;
-  }
-  mark_nodes<0>(exec, lanes, tiling, grid_cells, b, anew);
+  mark_nodes<0>(exec, lanes, box_tiling(lanes, grid_cells), grid_cells, b, anew);
   load_groups(exec, lanes, b);
 }
 

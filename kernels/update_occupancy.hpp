@@ -56,6 +56,20 @@ void set_fill_criterion(Occupancy<Device>& o, double tau) {
                     ~std::uint64_t(0));  // no set of cells: the next update finds another
 }
 
+/// From the next update on, tractions are declared where the particles are that carry them, beside those of
+/// Occupancy::tractions. carried [particle]; `tractions`: those that some particle carries.
+template <class Device, class Basis>
+void set_carried_tractions(Occupancy<Device>& o, const Basis& basis,
+                           const Kokkos::View<TractionMask*, Device>& carried, TractionMask tractions) {
+  auto& c = o.cells.carried;
+  c.particle = carried;
+  c.tractions = tractions;
+  const BitRows<Basis::dimension> rows(basis.grid);
+  fit_carried(c, static_cast<size_t>(rows.cell_row_count()), static_cast<size_t>(rows.node_row_count()),
+              static_cast<size_t>(rows.words));
+  mark_anew(o);
+}
+
 /// Makes the next update mark the boundary whether or not a particle has changed its bin.
 template <class Device>
 void mark_anew(Occupancy<Device>& o) {

@@ -13,10 +13,11 @@ namespace vsb::app {
 
 /// Every traction must have boundary nodes or surface points, and the body must not touch an open face of the
 /// grid where one is declared: there are no void cells beyond a face, so part of the load would be missing
-/// without a word. Throws SetupError.
+/// without a word. carried [particle]: tractions that move with it; empty where none does. Throws SetupError.
 template <class Basis, class Device, int Dim, class Real>
 void check_tractions(const Scene& scene, const Basis& basis, const Occupancy<Device>& occupancy,
-                     const Loads<Dim, Real>& loads, TractionMask on_surface, const PlacedParticles& placed) {
+                     const Loads<Dim, Real>& loads, TractionMask on_surface,
+                     const std::vector<TractionMask>& carried, const PlacedParticles& placed) {
   if (scene.tractions.empty()) return;
   const auto boundary =
       Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), occupancy.boundary, "vsb::boundary on host");
@@ -38,11 +39,12 @@ void check_tractions(const Scene& scene, const Basis& basis, const Occupancy<Dev
         "the traction's 'surface'",
         scene.tractions[k].name));
   }
-  for (const Point& x : placed.position) {
-    const auto shape = basis.shape(to_vector<Dim, Real>(x));
+  for (size_t p = 0; p < placed.position.size(); ++p) {
+    const auto shape = basis.shape(to_vector<Dim, Real>(placed.position[p]));
+    const TractionMask own = carried.empty() ? 0 : carried[p];
     for (int a = 0; a < Basis::support; ++a) {
       const auto ijk = basis.grid.node_ijk(shape.node[a]);
-      if ((declared(static_cast<size_t>(shape.node[a])) & ~loads.conservative()) == 0) continue;
+      if (own == 0 && (declared(static_cast<size_t>(shape.node[a])) & ~loads.conservative()) == 0) continue;
       for (int i = 0; i < Dim; ++i) {
         const auto& faces = scene.faces.fixed[static_cast<size_t>(i)];
         const bool lower = ijk[i] == 0 && faces[0] == 0,

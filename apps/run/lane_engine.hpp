@@ -9,6 +9,7 @@
 #include <vsb/kernels/balance.hpp>
 #include <vsb/kernels/health.hpp>
 #include <vsb/kernels/lane_loads.hpp>
+#include <vsb/kernels/loaded_cells.hpp>
 #include <vsb/kernels/spline_lane_step.hpp>
 #include "run/byte_stream.hpp"
 #include "run/execution_space.hpp"
@@ -30,7 +31,8 @@ class LaneEngine {
   struct Setup {
     UniformGrid<Dim, Real> grid;  ///< of the scene
     Walls<Dim> walls;
-    BoundaryNodes<Device> tractions;  ///< [node of the basis' grid]: declared
+    BoundaryNodes<Device> tractions;   ///< [node of the basis' grid]: declared
+    CarriedTractions<Device> carried;  ///< those that particles carry
     TractionMask conservative, original;
     int gauss_points;
     Material<Real> material;
@@ -65,6 +67,9 @@ class LaneEngine {
   /// Whether all loads are virtual stresses as the sweeps take them, which is what `balance` knows.
   bool loaded_by_sweeps() const { return state_.surface.count() == 0 && state_.original == 0; }
   Balance<Dim> balance(const Loads<Dim, Real>& loads) const;
+  /// Of some tractions of the sweeps.
+  TractionResultant<Dim> resultant(const Loads<Dim, Real>& loads, TractionMask among) const;
+  LoadedCells loaded_cells(TractionMask traction) const;
   /// strain [particle], of a plastic material.
   void equivalent_plastic_strain(const Kokkos::View<Real*, Device>& strain) const;
   /// Calls visit(particle, cell of the grid) for all of them, in any order.

@@ -68,6 +68,7 @@ LaneEngine<Dim, Real, State>::LaneEngine(const Setup& setup, const SurfacePoints
   state_.memory.lanes.state_size = setup.state_size;
   state_.memory.lanes.particle_count = setup.particles;
   state_.boundary.declared = setup.tractions;
+  state_.boundary.bits.carried = setup.carried;
   state_.boundary.conservative = setup.conservative;
   state_.original = setup.original;
   state_.gauss_points = setup.gauss_points;
@@ -142,6 +143,20 @@ Balance<Dim> LaneEngine<Dim, Real, State>::balance(const Loads<Dim, Real>& loads
 }
 
 template <int Dim, class Real, class State>
+TractionResultant<Dim> LaneEngine<Dim, Real, State>::resultant(const Loads<Dim, Real>& loads,
+                                                               TractionMask among) const {
+  TractionResultant<Dim> result{};
+  loads.template with_lane_field<!State::splines>(
+      [&](const auto& field) { result = vsb::resultant(exec_, state_, field, among); });
+  return result;
+}
+
+template <int Dim, class Real, class State>
+LoadedCells LaneEngine<Dim, Real, State>::loaded_cells(TractionMask traction) const {
+  return count_loaded_cells(exec_, state_, traction);
+}
+
+template <int Dim, class Real, class State>
 void LaneEngine<Dim, Real, State>::equivalent_plastic_strain(
     const Kokkos::View<Real*, Device>& strain) const {
   const auto& lanes = state_.memory.lanes;
@@ -182,11 +197,11 @@ size_t LaneEngine<Dim, Real, State>::bytes() const {
   const auto& b = state_.boundary;
   const auto& p = state_.surface;
   const size_t columns = static_cast<size_t>(l.slot_count) * l.width * static_cast<size_t>(l.columns());
-  return columns * sizeof(Real) + bytes(l.id, l.held, l.mass_matrices, l.groups, l.stencils, l.layer_first,
-                                        l.plane_first, l.group_at, l.chunk_at, n.data, n.fixed,
-                                        b.bits.occupied, b.bits.exterior, b.bits.boundary, b.marked, b.active,
-                                        b.tractions, p.cell, p.xi, p.area, p.tractions, p.carrier, p.order,
-                                        p.run_cell, p.run_first, p.cell_count);
+  return columns * sizeof(Real) +
+         bytes(l.id, l.held, l.mass_matrices, l.groups, l.stencils, l.layer_first, l.plane_first, l.group_at,
+               l.chunk_at, n.data, n.fixed, b.bits.occupied, b.bits.exterior, b.bits.boundary, b.marked,
+               b.active, b.tractions, b.bits.carried.particle, b.bits.carried.cells, b.bits.carried.nodes,
+               p.cell, p.xi, p.area, p.tractions, p.carrier, p.order, p.run_cell, p.run_first, p.cell_count);
 }
 
 template <int Dim, class Real, class State>

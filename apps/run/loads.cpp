@@ -94,6 +94,31 @@ TractionMask tractions_at(const Scene& scene, TractionMask among, const Point& x
   return mask;
 }
 
+TractionMask carried_tractions(const Scene& scene) {
+  TractionMask mask = 0;
+  for (size_t k = 0; k < scene.tractions.size(); ++k)
+    if (scene.tractions[k].carried) mask |= TractionMask(1) << k;
+  return mask;
+}
+
+std::vector<TractionMask> carried_by_particles(const Scene& scene, const PlacedParticles& placed) {
+  const TractionMask carried = carried_tractions(scene);
+  if (carried == 0) return {};
+  std::vector<TractionMask> masks;
+  TractionMask found = 0;
+  for (const Point& x : placed.position) {
+    masks.push_back(tractions_at(scene, carried, x));
+    found |= masks.back();
+  }
+  for (size_t k = 0; k < scene.tractions.size(); ++k)
+    if ((carried & ~found) >> k & 1u)
+      throw SetupError(fmt::format(
+          "traction '{}' has configuration = \"initial\", and no particle lies in its 'surface' at "
+          "the start to carry it: let the surface reach a cell or two into the body",
+          scene.tractions[k].name));
+  return masks;
+}
+
 std::vector<LoadedPoint> loaded_points(const Scene& scene, const PlacedParticles& placed) {
   std::vector<LoadedPoint> points;
   for (size_t k = 0; k < scene.tractions.size(); ++k) {

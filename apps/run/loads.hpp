@@ -28,6 +28,10 @@ struct LoadedPoint {
 TractionMask imposed_by(const Scene& scene, Imposition imposition);
 /// Of the tractions in `among`, those whose surface contains a point.
 TractionMask tractions_at(const Scene& scene, TractionMask among, const Point& x);
+/// The tractions that move with the material, as a mask.
+TractionMask carried_tractions(const Scene& scene);
+/// [particle]: those of them in whose surface it is placed. Throws SetupError for one that has no particle.
+std::vector<TractionMask> carried_by_particles(const Scene& scene, const PlacedParticles& placed);
 /// Massless boundary particles on the surface of the bodies, and loaded material points: every piece of
 /// surface loads the nearest particle of its traction's layer.
 std::vector<LoadedPoint> loaded_points(const Scene& scene, const PlacedParticles& placed);
@@ -76,8 +80,17 @@ class Loads {
   TractionMask conservative() const { return conservative_; }
 
   void set_time(const Scene& scene, double t) {
+    set_factors(scene, [&](const TractionSpec& traction) { return traction.time(t); });
+  }
+  /// All of them at full load, whatever their time.
+  void set_full(const Scene& scene) {
+    set_factors(scene, [](const TractionSpec&) { return 1.0; });
+  }
+  /// The share of the full load that factor_of(traction) says.
+  template <class Factor>
+  void set_factors(const Scene& scene, const Factor& factor_of) {
     for (size_t k = 0; k < scene.tractions.size(); ++k) {
-      const double factor = scene.tractions[k].time(t);
+      const double factor = factor_of(scene.tractions[k]);
       if (const auto* full = std::get_if<Stress6>(&scene.tractions[k].field)) {
         for (size_t c = 0; c < SymmetricTensor<Dim, Real>::size; ++c)
           uniform_.stress[k][static_cast<int>(c)] = static_cast<Real>(factor * (*full)[c]);

@@ -20,6 +20,8 @@ struct NoLanes {
   Invalid find_invalid() const { return {}; }
   bool loaded_by_sweeps() const { return false; }
   Balance<Dim> balance(const Loads<Dim, Real>&) const { return {}; }
+  TractionResultant<Dim> resultant(const Loads<Dim, Real>&, TractionMask) const { return {}; }
+  LoadedCells loaded_cells(TractionMask) const { return {}; }
   void equivalent_plastic_strain(const Kokkos::View<Real*, Device>&) const {}
   void for_each_cell(const std::function<void(int, const Vector<Dim, int>&)>&) const {}
   std::unique_ptr<FieldSource> fields() const { return nullptr; }

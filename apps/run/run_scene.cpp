@@ -16,6 +16,7 @@
 #include "run/run_static.hpp"
 #include "run/scene_advice.hpp"
 #include "run/stages.hpp"
+#include "run/traction_watch.hpp"
 
 namespace vsb::app {
 
@@ -82,12 +83,16 @@ RunResult run(const Scene& scene, const RunOptions& options) {
   const auto simulation = make_simulation(scene);
   std::optional<Stages> stages;
   if (scene.removal) stages.emplace(scene, *simulation);
+  TractionWatch watch(scene, *simulation);
   Results results(options.directory, scene);
   long long resumed_step = -1;
   if (options.resume) {
     if (const auto saved = results.read_checkpoint()) {
       simulation->restore(*saved, *results.read_checkpoint_particles());
-      if (stages) stages->restore(saved->staged);
+      if (stages) {
+        stages->restore(saved->staged);
+        watch.begin();
+      }
       resumed_step = saved->step;
     } else if (!options.progress_only) {
       fmt::print(stderr, "vsb: no checkpoint in {}; starting from step 0\n", options.directory);
@@ -136,9 +141,16 @@ RunResult run(const Scene& scene, const RunOptions& options) {
     seconds_before_stage = figures.seconds;
     found_static = false;
     forecast = StaticForecast(*criterion);
+    watch.begin();
     write_checkpoint();
     last_checkpoint = Clock::now();
     return false;
+  };
+  const auto look_at_tractions = [&] {
+    for (const auto& loss : watch.look()) {
+      progress.finish();
+      if (!options.progress_only) fmt::print(stderr, "vsb: warning: {}\n", loss);
+    }
   };
   try {
     while (!done) {
@@ -153,6 +165,7 @@ RunResult run(const Scene& scene, const RunOptions& options) {
       figures.seconds += seconds_since(begin);
       const long long step = simulation->step();
       if (step % health_interval == 0 || interrupt_requested()) simulation->check_health();
+      if (step % health_interval == 0 || step >= last_step()) look_at_tractions();
       bool failed = false;
       if (criterion && step % criterion->check_every == 0) {
         const bool constant_loads = simulation->load_time() >= settled;
@@ -208,6 +221,7 @@ RunResult run(const Scene& scene, const RunOptions& options) {
   figures.steps = simulation->step();
   figures.steps_timed = simulation->step() - first_step;
   figures.found_static = found_static;
+  figures.tractions = watch.report();
   if (stages) figures.stages = stages->report();
   if (!diverged) {
     if (!stages && (scene.output.every == 0 || simulation->step() % scene.output.every != 0))

@@ -23,6 +23,26 @@ double largest_load(const Scene& scene) {
   return load;
 }
 
+double smallest_modulus(const Scene& scene) {
+  double modulus = scene.bodies.front().material.youngs_modulus;
+  for (const auto& body : scene.bodies) modulus = std::min(modulus, body.material.youngs_modulus);
+  return modulus;
+}
+
+/// Of the softest body, about.
+double strain_by(const Scene& scene, const TractionSpec& traction) {
+  const auto box = bounding_box(scene.grid, scene.dimension);
+  return largest_stress(traction.field, box.lower, box.upper) / smallest_modulus(scene);
+}
+
+/// A strain by which a boundary moves through cells.
+constexpr double large_strain = 0.05;
+
+/// Whether the place of the boundary decides where a traction acts.
+bool acts_on_nodes(const TractionSpec& t) {
+  return t.imposition == Imposition::virtual_stress || t.imposition == Imposition::virtual_stress_original;
+}
+
 /// Whether a body moves as a whole, as far as a scene shows before it runs.
 bool moves_as_a_whole(const Scene& scene) {
   for (const auto& body : scene.bodies)
@@ -65,8 +85,7 @@ double largest_stable_kappa(const Scene& scene) {
 }  // namespace
 
 std::string units_hint(const Scene& scene) {
-  double modulus = scene.bodies.front().material.youngs_modulus;
-  for (const auto& body : scene.bodies) modulus = std::min(modulus, body.material.youngs_modulus);
+  const double modulus = smallest_modulus(scene);
   const double load = largest_load(scene), ratio = load / modulus;
   if (!(ratio > 0.1)) return "";
   return fmt::format(
@@ -77,6 +96,13 @@ std::string units_hint(const Scene& scene) {
 std::vector<std::string> scene_advice(const Scene& scene) {
   std::vector<std::string> advice;
   if (const auto hint = units_hint(scene); !hint.empty()) advice.push_back(hint);
+  for (const auto& traction : scene.tractions)
+    if (const double strain = strain_by(scene, traction);
+        traction.has_surface && !traction.carried && acts_on_nodes(traction) && strain > large_strain)
+      advice.push_back(fmt::format(
+          "traction '{}' may strain a body by {:.2g}, and its 'surface' is fixed in space: the loaded "
+          "boundary may move out of it; with configuration = \"initial\" it moves with the material",
+          traction.name, strain));
   if (scene.time.until_static && scene.method.damping == 0)
     advice.emplace_back(
         "method.damping = 0: nothing takes the oscillation away, so the run may never become static; 0.05 to "

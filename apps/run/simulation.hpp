@@ -47,6 +47,14 @@ struct BalanceReport {
   Point exact_force{}, exact_torque{};  ///< of the tractions on the initial surface of the bodies
 };
 
+/// What a traction that acts on boundary nodes does at the moment, at full load.
+struct TractionState {
+  size_t traction = 0;                  ///< number in the scene
+  Point force{};                        ///< its resultant, N
+  double load = 0;                      ///< integral of |sbar n| over its surface at the start, N
+  int whole_cells = 0, part_cells = 0;  ///< that it loads; see kernels/loaded_cells.hpp
+};
+
 /// What the void filter keeps from the boundary; see kernels/filter_voids.hpp.
 struct VoidFilterReport {
   int false_voids = 0, dropped_nodes = 0;
@@ -117,6 +125,8 @@ class Simulation {
   /// The balance of the present state under the loads of the present or of a given time, s.
   virtual BalanceReport balance() = 0;
   virtual BalanceReport balance_under_loads_at(double t) = 0;
+  /// Of the tractions that act on boundary nodes, in the present state.
+  virtual std::vector<TractionState> traction_states() = 0;
   virtual std::unique_ptr<ParticleReader> read_particles() = 0;
   virtual GridSnapshot grid_snapshot() = 0;
   /// The equivalent plastic deviatoric strain (Eq. 34) of every particle, smoothed over the nodes or as it

@@ -12,6 +12,7 @@
 #include <vsb/kernels/balance.hpp>
 #include <vsb/kernels/flag_boundary_particles.hpp>
 #include <vsb/kernels/health.hpp>
+#include <vsb/kernels/loaded_cells.hpp>
 #include <vsb/kernels/plastic_strain.hpp>
 #include <vsb/kernels/smooth_particles.hpp>
 #include "run/basis_of.hpp"
@@ -49,7 +50,8 @@ class SimulationOf final : public Simulation {
     moment_fit_ = placed.moment_fit;
     near_ = to_vector<Dim, Real>(placed.position.front());
     bodies_ = bodies_of<Dim, Real>(scene_, placed);
-    declared_ = declared_tractions<Device>(scene_, basis_, loads_.on_nodes());
+    declared_ = declared_tractions<Device>(scene_, basis_, loads_.on_nodes() & ~carried_tractions(scene_));
+    carried_ = carried_by_particles(scene_, placed);
     const auto surface = place_surface_points<Real, Device>(scene_, on_host_.basis, placed);
     surface_ = surface.points;
     resultants_ = exact_resultants(scene_);
@@ -65,7 +67,7 @@ class SimulationOf final : public Simulation {
       remove_body_cells<Device>(scene_, on_host_.basis.grid, occupancy.cells.outside);
     }
     locate();
-    check_tractions(scene_, on_host_.basis, occupancy, loads_, surface.tractions, placed);
+    check_tractions(scene_, on_host_.basis, occupancy, loads_, surface.tractions, carried_, placed);
     auto inside = occupied_cells(scene_, on_host_.basis, placed);
     if (scene.method.void_filter) add_voids<Device>(scene_, on_host_.basis, occupancy.cells.outside, inside);
     advice_ = field_advice(scene_, placed, inside);
@@ -103,8 +105,8 @@ class SimulationOf final : public Simulation {
            bytes(block.state_block, n.sums, n.acceleration, n.velocity, n.remapped_velocity,
                  n.fixed_components, o.bins.bin, o.bins.order, o.bins.offset, o.bins.cursor, o.bins.slot,
                  o.bins.occupied, o.cells.occupied, o.cells.exterior, o.cells.boundary, o.cells.underfilled,
-                 o.cells.outside, o.boundary, state.sums_workspace.particles.bin_sums,
-                 state.remap_workspace.bin_sums);
+                 o.cells.outside, o.cells.carried.particle, o.cells.carried.cells, o.cells.carried.nodes,
+                 o.boundary, state.sums_workspace.particles.bin_sums, state.remap_workspace.bin_sums);
   }
 
   void advance(long long steps) override {
@@ -163,6 +165,42 @@ class SimulationOf final : public Simulation {
       }
     }
     return report;
+  }
+
+  std::vector<TractionState> traction_states() override {
+    std::vector<TractionState> states;
+    for (size_t k = 0; k < scene_.tractions.size(); ++k)
+      if ((loads_.on_nodes() & ~loads_.conservative()) >> k & 1u) {
+        states.emplace_back();
+        states.back().traction = k;
+        states.back().load = resultants_[k].load;
+      }
+    if (states.empty()) return states;
+    loads_.set_full(scene_);
+    const bool in_lanes = lanes_ && lanes_->loaded_by_sweeps();
+    std::optional<Loan> loan;
+    if (!in_lanes) {
+      loan.emplace(*this);
+      loads_.balance(exec_, memory_->state.particles, near_);
+      locate();
+    }
+    for (auto& state : states) {
+      const TractionMask mask = TractionMask(1) << state.traction;
+      TractionResultant<Dim> r;
+      LoadedCells cells;
+      if (in_lanes) {
+        r = lanes_->resultant(loads_, mask);
+        cells = lanes_->loaded_cells(mask);
+      } else {
+        const auto& s = memory_->state;
+        r = with_field([&](const auto& field) { return vsb::resultant(exec_, s, basis_, field, mask); });
+        cells = count_loaded_cells(exec_, s.occupancy, basis_, mask);
+      }
+      for (int i = 0; i < Dim; ++i) state.force[static_cast<size_t>(i)] = r.force[i];
+      state.whole_cells = cells.whole;
+      state.part_cells = cells.part;
+    }
+    return states;
   }
 
   std::unique_ptr<ParticleReader> read_particles() override {
@@ -339,9 +377,20 @@ class SimulationOf final : public Simulation {
     fix_faces(scene_, basis_, state.nodes.fixed_components);
     state.occupancy.tractions = declared_;
     state.occupancy.conservative = loads_.conservative();
+    if (!carried_.empty())
+      set_carried_tractions(state.occupancy, basis_, carried_view(), carried_tractions(scene_));
     state.surface = surface_;
     if (surface_.count() > 0) Kokkos::deep_copy(surface_.bins.bin, -1);  // to be sorted anew
     return memory;
+  }
+  /// What the particles there are carry.
+  Kokkos::View<TractionMask*, Device> carried_view() const {
+    const auto count = carried_.empty() ? 0 : static_cast<size_t>(particle_count());
+    const Kokkos::View<TractionMask*, Device> view("vsb::carried_tractions", count);
+    const auto host = Kokkos::create_mirror_view(view);
+    for (size_t p = 0; p < count; ++p) host(p) = carried_[static_cast<size_t>(id_of(static_cast<int>(p)))];
+    Kokkos::deep_copy(view, host);
+    return view;
   }
   void bring_back() {
     if (memory_) return;
@@ -354,6 +403,8 @@ class SimulationOf final : public Simulation {
     setup.grid = uniform_grid<Dim, Real>(scene_.grid);
     setup.walls = walls<Dim>(scene_.faces);
     setup.tractions = declared_;
+    setup.carried.particle = carried_view();
+    setup.carried.tractions = carried_tractions(scene_);
     setup.conservative = loads_.conservative();
     setup.original = loads_.original();
     setup.gauss_points = loads_.gauss_points();
@@ -406,6 +457,7 @@ class SimulationOf final : public Simulation {
     block = keep_in_block(exec_, block, kept);
     state.particles = block.particles;
     state.occupancy.bins = allocate_bins<Device>(particle_count(), basis_.bin_count());
+    state.occupancy.cells.carried.particle = carried_view();
   }
 
   /// The particles that are left, of all there were at the start.
@@ -527,6 +579,7 @@ class SimulationOf final : public Simulation {
   std::vector<Body<Real>> bodies_;
   std::vector<int> ids_;  ///< of the particles that are left; empty before a removal
   BoundaryNodes<Device> declared_;
+  std::vector<TractionMask> carried_;  ///< [particle at the start]: tractions that move with it; may be empty
   SurfacePoints<Dim, Real, Device> surface_;  ///< none, unless a traction is imposed on points
   StepOptions<Dim, Real> options_{};
   long long step_ = 0, loads_begin_ = 0;

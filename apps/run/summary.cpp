@@ -93,6 +93,27 @@ std::array<int, 3> moment_cells(const Scene& scene, const MomentFit& fit) {
 
 }  // namespace
 
+namespace {
+
+toml::array traction_reports(const RunFigures& f) {
+  toml::array reports;
+  for (const auto& t : f.tractions) {
+    toml::table report{{"name", t.name},
+                       {"full_force_at_start", array(t.force_at_start)},
+                       {"full_force", array(t.force)},
+                       {"cells_loaded_in_part_at_start", t.part_cells_at_start},
+                       {"cells_loaded_in_part", t.part_cells}};
+    if (t.lost_at >= 0) {
+      report.insert("lost_at_step", t.lost_at);
+      report.insert("loss", t.loss);
+    }
+    reports.push_back(report);
+  }
+  return reports;
+}
+
+}  // namespace
+
 std::string summary_json(const Scene& scene, const RunFigures& f) {
   toml::table errors, compared, provenance;
   for (const auto& [name, value] : f.errors) errors.insert(name, value);
@@ -127,6 +148,7 @@ std::string summary_json(const Scene& scene, const RunFigures& f) {
       {"peak_bytes", peak_bytes()},
       {"provenance", provenance},
   };
+  if (!f.tractions.empty()) summary.insert("tractions", traction_reports(f));
   if (f.solution == Solution::balance)
     summary.insert("resultant", toml::table{{"load", f.share.load},
                                             {"net_force_share", f.share.net_force},
@@ -212,6 +234,8 @@ void print_report(const Scene& scene, const RunFigures& f) {
   const auto& b = f.balance;
   fmt::print("force ratio {:.2e}, energy ratio {:.2e}\n", b.force_ratio, b.energy_ratio);
   if (!scene.removal) print_resultant(scene, b, "");  // the surface of the start is there no longer
+  for (const auto& t : f.tractions)
+    if (t.lost_at >= 0) fmt::print("lost load: {}\n", t.loss);
   if (scene.method.void_filter)
     fmt::print("void filter: {} false voids inside the bodies, {} boundary nodes dropped, {} left\n",
                f.void_filter.false_voids, f.void_filter.dropped_nodes, f.boundary_nodes);

@@ -11,6 +11,7 @@
 #include "run/simulation.hpp"
 #include "run/solution.hpp"
 #include "run/stage_report.hpp"
+#include "run/traction_watch.hpp"
 
 namespace vsb::app {
 
@@ -28,9 +29,10 @@ struct RunFigures {
   MomentFit moment_fit;
   VoidFilterReport void_filter;
   BalanceReport balance;
-  ResultantShare share;    ///< of a balance alone
-  StagesReport stages;     ///< where particles are removed in stages
-  std::string state_hash;  ///< of the particles' bits at the end
+  std::vector<TractionReport> tractions;  ///< those on boundary nodes, of an explicit run
+  ResultantShare share;                   ///< of a balance alone
+  StagesReport stages;                    ///< where particles are removed in stages
+  std::string state_hash;                 ///< of the particles' bits at the end
   std::vector<std::pair<std::string, double>> errors;
   std::vector<std::pair<std::string, double>> compared;  ///< figures of the comparison that are no errors
 

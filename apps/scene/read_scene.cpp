@@ -156,18 +156,41 @@ void read_nodes(TableReader& r, const Scene& scene, TractionSpec& traction) {
              "is for free bodies: a part that ends at a symmetry plane or a support has a resultant");
 }
 
+/// Whether a surface is one of places, or of the material that was there at the start; points and loaded
+/// faces of cells belong to the surface of the start.
+void read_configuration(TableReader& r, TractionSpec& traction) {
+  static const char* key = "configuration";
+  if (traction.all_nodes) {
+    if (r.has(key))
+      r.fail(
+          *r.source().get(key), key,
+          "is for a traction with a 'surface'; with nodes = \"all\" leave it out, the traction follows the "
+          "material all the same");
+    return;
+  }
+  const bool on_nodes = traction.imposition == Imposition::virtual_stress ||
+                        traction.imposition == Imposition::virtual_stress_original;
+  if (on_nodes)
+    traction.carried = r.choice(key, {"current", "initial"}, "current") == "initial";
+  else if (r.has(key))
+    r.choice(key, {"initial"});
+}
+
 TractionSpec read_traction(TableReader r, const Scene& scene, size_t number, TimeShape& time) {
   const int dimension = scene.dimension;
   TractionSpec traction;
-  std::vector<std::string> keys = {"name",    "imposition", "nodes",           "self_balanced",
-                                   "surface", "layer",      "points_per_cell", "time"};
+  std::vector<std::string> keys = {"name",          "imposition",      "nodes",
+                                   "self_balanced", "surface",         "configuration",
+                                   "layer",         "points_per_cell", "time"};
   keys.insert(keys.end(), stress_field_keys.begin(), stress_field_keys.end());
   r.allow_only(keys);
   traction.name = r.text("name", fmt::format("traction {}", number + 1));
   traction.imposition = read_imposition(r);
   traction.field = read_stress_field(r, scene);
   read_nodes(r, scene, traction);
+  traction.has_surface = r.has("surface");
   traction.surface = read_region(r, "surface", dimension, true);
+  read_configuration(r, traction);
   traction.layer = everywhere();
   if (traction.imposition == Imposition::material_points)
     traction.layer = read_region(r, "layer", dimension, true);

@@ -58,8 +58,10 @@ struct TractionSpec {
   bool all_nodes = false;      ///< acts at all active nodes, not at the boundary nodes alone
   bool self_balanced = false;  ///< its resultant is zero, see kernels/self_balance.hpp
   Region surface;
-  Region layer;             ///< which material points may carry the load
-  int points_per_cell = 0;  ///< sampling of the surface, in each direction
+  bool has_surface = false;  ///< whether the scene says which; everywhere otherwise
+  bool carried = false;      ///< on nodes: the surface is that of the undeformed body and moves with it
+  Region layer;              ///< which material points may carry the load
+  int points_per_cell = 0;   ///< sampling of the surface, in each direction
   TimeFunction time;
 };
 

@@ -157,6 +157,7 @@ struct BothEngines {
   std::vector<TractionMask> masks;  ///< declared at the grid's nodes
   TractionMask conservative = 0;
   SurfacePoints<Dim, Real, Device> surface;  ///< none, unless a test has some
+  CarriedTractions<Device> carried;          ///< by particles; none, unless a test has some
 
   explicit BothEngines(const BodyShape& shape, unsigned seed = 81) {
     grid = make_grid<Dim, Real>({{42, 22, 22}});
@@ -259,6 +260,8 @@ struct BothEngines {
     edit(state.occupancy.tractions,
          [&](const auto& host) { std::copy(masks.begin(), masks.end(), host.data()); });
     state.occupancy.conservative = lanes.boundary.conservative = conservative;
+    if (carried.any()) set_carried_tractions(state.occupancy, basis, carried.particle, carried.tractions);
+    lanes.boundary.bits.carried = carried;
     edit(state.nodes.fixed_components, [&](const auto& host) {
       for (int I = 0; I < basis.node_count(); ++I) {
         const auto ijk = ijk_of(I);

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/traction_watch.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace vsb::app {
+
+namespace {
+
+/// The share of a resultant, or of the loaded cells, that counts as lost.
+constexpr double lost_share = 0.1;
+
+/// The resultant over the load of a closed surface, or nearly: it may grow as well as shrink by a loss.
+constexpr double closed_share = 0.5;
+
+double length(const Point& v) {
+  return std::hypot(v[0], v[1], v[2]);
+}
+
+std::string text(const Point& v, int dimension) {
+  std::string list;
+  for (int i = 0; i < dimension; ++i)
+    list += fmt::format("{}{:.4g}", i == 0 ? "" : ", ", v[static_cast<size_t>(i)]);
+  return list;
+}
+
+}  // namespace
+
+TractionWatch::TractionWatch(const Scene& scene, Simulation& simulation)
+    : scene_(scene), simulation_(simulation) {
+  begin();
+}
+
+void TractionWatch::begin() {
+  start_ = simulation_.traction_states();
+  reports_.resize(start_.size());
+  for (size_t n = 0; n < start_.size(); ++n) {
+    auto& report = reports_[n];
+    report.name = scene_.tractions[start_[n].traction].name;
+    report.force_at_start = report.force = start_[n].force;
+    report.part_cells_at_start = report.part_cells = start_[n].part_cells;
+  }
+}
+
+std::vector<std::string> TractionWatch::look() {
+  std::vector<std::string> losses;
+  if (start_.empty()) return losses;
+  const auto now = simulation_.traction_states();
+  for (size_t n = 0; n < now.size(); ++n) {
+    auto& report = reports_[n];
+    report.force = now[n].force;
+    report.part_cells = now[n].part_cells;
+    if (report.lost_at >= 0) continue;
+    report.loss = loss_of(now[n], start_[n]);
+    if (report.loss.empty()) continue;
+    report.lost_at = simulation_.step();
+    losses.push_back(report.loss);
+  }
+  return losses;
+}
+
+std::string TractionWatch::loss_of(const TractionState& now, const TractionState& start) const {
+  const auto& traction = scene_.tractions[start.traction];
+  const double before = length(start.force), after = length(now.force);
+  const bool closed = before < closed_share * start.load;
+  const int before_cells = start.whole_cells + start.part_cells;
+  std::string what;
+  if (!closed && after < (1 - lost_share) * before)
+    what = fmt::format("has lost {:.0f} % of its resultant: at full load ({}) N act, at the start ({}) N did",
+                       100 * (1 - after / before), text(now.force, scene_.dimension),
+                       text(start.force, scene_.dimension));
+  else if (closed && std::abs(after - before) > lost_share * start.load)
+    what = fmt::format(
+        "acts on another part of the boundary: its resultant at full load is ({}) N, at the start it was "
+        "({}) N",
+        text(now.force, scene_.dimension), text(start.force, scene_.dimension));
+  else if (!traction.carried && now.part_cells > start.part_cells + lost_share * before_cells)
+    what = fmt::format(
+        "ends within the boundary: beside its surface {} cells have nodes that carry nothing, {} had at the "
+        "start",
+        now.part_cells, start.part_cells);
+  if (what.empty()) return {};
+  return fmt::format("at step {}, time {:.6g} s: traction '{}' {}{}", simulation_.step(), simulation_.time(),
+                     traction.name, what,
+                     traction.has_surface && !traction.carried
+                         ? "; its 'surface' is fixed in space and the boundary moves out of it: with "
+                           "configuration = \"initial\" it moves with the material"
+                         : "");
+}
+
+}  // namespace vsb::app

@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Resultants of tractions that end at supports, surfaces that move with the material, and loads that are lost."""
+import json
+import re
+import unittest
+
+import numpy as np
+from vsb_program import SCENES, ProgramTest, last_fields, vsb
+
+# Water 8 m deep against an inclined face (1 : 2) on a fixed base.
+DAM = """
+dimension = 2
+grid = { lower = [0.0, 0.0], upper = [20.0, 12.0], spacing = 0.5 }
+faces.y_min = "%s"
+[[body]]
+particles_per_cell = 2
+density = 2400.0
+material = { youngs_modulus = 2e10, poisson_ratio = 0.2 }
+shape.intersection = [
+  { box = { lower = [2.0, 0.0], upper = [18.0, 10.0] } },
+  { half_space = { point = [2.0, 0.0], normal = [-1.0, 0.5] } },
+  { half_space = { point = [12.0, 0.0], normal = [1.0, 0.3] } },
+]
+[[traction]]
+hydrostatic = { unit_weight = 9810.0, level = 8.0 }
+surface.half_space = { point = [8.0, 0.0], normal = [1.0, 0.0] }
+[method]
+damping = 0.3
+[time]
+kappa = 0.5
+steps = 20
+"""
+WATER = 9810 * 64 / 2, -9810 * 64 / 4
+
+# A column shortened by p = 0.3 E; its end leaves the region in which the load is declared at first.
+COLUMN = """
+dimension = 1
+grid = { lower = [0.0], upper = [12.0], spacing = 0.5 }
+faces.x_min = "fixed"
+[[body]]
+shape.box = { lower = [0.0], upper = [9.6] }
+lattice.uniform = { spacing = 0.1 }
+density = 1.0
+material = { youngs_modulus = 1e3, poisson_ratio = 0.0 }
+[[traction]]
+name = "end"
+pressure = 300.0
+surface.box = { lower = [8.5], upper = [12.0] }
+time = { smooth_ramp = 5.0 }
+[method]
+damping = 0.1
+volume_update = "exponential"
+[time]
+kappa = 0.2
+until_static = {}
+"""
+INITIAL = ("--set", 'traction[0].configuration="initial"')
+
+
+def engine(name):
+    return ("--set", f'method.engine="{name}"')
+
+
+class Resultants(ProgramTest):
+    def checked(self, scene, *more):
+        """Resultant of the tractions and the one on the exact surface, as `vsb check` prints them."""
+        done = vsb("check", scene, *more)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found = re.search(r"resultant of the tractions \((.*?)\) N, on the exact surface \((.*?)\) N", done.stdout)
+        return [np.array([float(f) for f in part.split(",")]) for part in found.groups()]
+
+    def test_a_face_that_ends_at_a_support(self):
+        for face in ("fixed", "roller"):
+            scene = self.write(DAM % face)
+            for more, tolerance in (((), 1e-6), (("--set", 'traction[0].imposition="virtual_stress_original"'), 0.02),
+                                    (("--set", 'traction[0].imposition="boundary_particles"'), 1e-3),
+                                    (("--set", 'traction[0].imposition="material_points"'), 0.02),
+                                    (("--set", 'method.basis="quadratic_bspline"'), 0.02), (("--set", 'method.basis="ugimp"'), 0.02),
+                                    (("--set", 'setting="accurate"'), 0.02)):
+                force, exact = self.checked(scene, *more)
+                np.testing.assert_allclose(exact[:2], WATER, rtol=1e-3)
+                np.testing.assert_allclose(force[:2], WATER, rtol=tolerance, err_msg=f"{face} {more}")
+
+    def test_both_engines_in_a_run(self):
+        scene = self.write(DAM % "fixed")
+        for name in ("cell_lanes", "particles"):
+            summary = self.run_scene(scene, *engine(name), out=name)
+            np.testing.assert_allclose(summary["net_force"][:2], WATER, rtol=1e-3, err_msg=name)
+
+    def test_quarter_models(self):
+        for scene, more in (("cylinder", ()), ("cylinder-accurate", ()), ("cylinder-polar", ()),
+                            ("cylinder", ("--set", 'method.basis="quadratic_bspline"'))):
+            force, exact = self.checked(SCENES / f"{scene}.toml", *more)
+            np.testing.assert_allclose(exact[:2], 1e5, rtol=1e-3)
+            np.testing.assert_allclose(force[:2], 1e5, rtol=2e-3, err_msg=f"{scene} {more}")
+
+
+class Surfaces(ProgramTest):
+    def ends_right(self, out, tolerance):
+        fields = last_fields(out)
+        np.testing.assert_allclose(fields["position"].max() / (9.55 * np.exp(-0.3)), 1, atol=tolerance)
+        np.testing.assert_allclose(fields["cauchy_stress"][:, 0].mean() / -300, 1, atol=5 * tolerance)
+
+    def test_a_load_that_leaves_its_region_is_told(self):
+        for name in ("cell_lanes", "particles"):
+            done = vsb("run", self.write(COLUMN), "--out", self.folder / name, *engine(name))
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("its 'surface' is fixed in space", done.stderr)  # before it begins
+            at, time, told = re.search(r"warning: at step (\d+), time ([\d.]+) s: traction 'end' (.*)", done.stderr).groups()
+            self.assertEqual(done.stderr.count("at step"), 1)
+            self.assertIn('configuration = "initial"', told)
+            self.assertIn("lost load: at step", done.stdout)
+            summary = self.summary(name)["tractions"]
+            self.assertEqual([t["name"] for t in summary], ["end"])
+            self.assertEqual(summary[0]["lost_at_step"], int(at))
+            self.assertLess(abs(summary[0]["full_force"][0]), 0.9 * abs(summary[0]["full_force_at_start"][0]))
+            # The end has passed node 8.5 by then, where the region ends, or is in the cell beyond.
+            self.assertGreater(float(time), 1)
+
+    def summary(self, out):
+        return json.loads((self.folder / out / "summary.json").read_text())
+
+    def test_a_surface_moves_with_the_material(self):
+        for name in ("cell_lanes", "particles"):
+            for basis, tolerance in (("linear", 0.01), ("quadratic_bspline", 0.01)):
+                out = f"{name}-{basis}"
+                done = vsb("run", self.write(COLUMN), "--out", self.folder / out, *engine(name), *INITIAL,
+                           "--set", f'method.basis="{basis}"')
+                self.assertEqual(done.returncode, 0, out + done.stderr)
+                self.assertNotIn("traction 'end'", done.stderr)
+                self.ends_right(self.folder / out, tolerance)
+                self.assertNotIn("lost_at_step", self.summary(out)["tractions"][0])
+
+    def test_resumed_runs_have_the_same_bits(self):
+        scene = self.write(COLUMN)
+        for name in ("cell_lanes", "particles"):
+            self.resume(str(scene.with_suffix("")), *engine(name), *INITIAL, pause=0.3)
+
+    def test_where_it_does_not_belong(self):
+        scene = self.write(COLUMN)
+        for more, words in ((("--set", 'traction[0].configuration="first"'), 'one of'),
+                            (("--set", 'traction[0].imposition="boundary_particles"', "--set", 'traction[0].configuration="current"'),
+                             "configuration"),
+                            ((*INITIAL, "--set", "traction[0].surface.box.lower=[9.7]"), "no particle lies in its 'surface'")):
+            done = vsb("check", scene, *more)
+            self.assertEqual(done.returncode, 2, more)
+            self.assertIn(words, done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
