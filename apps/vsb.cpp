@@ -12,6 +12,7 @@
 #include "run/kokkos_session.hpp"
 #include "run/run_scene.hpp"
 #include "run/simulation.hpp"
+#include "run/standard_streams.hpp"
 #include "scene/scene_error.hpp"
 #include "study/read_study.hpp"
 #include "study/run_study.hpp"
@@ -23,11 +24,6 @@
 namespace {
 
 using namespace vsb::app;
-
-/// What --threads asks for, else OMP_NUM_THREADS (0 here), else as many as pay.
-int threads_for(const Scene& scene, int asked) {
-  return asked > 0 || std::getenv("OMP_NUM_THREADS") ? asked : useful_threads(count_particles(scene));
-}
 
 /// Large arrays go back to the system when they are freed. Left alone, glibc keeps those of up to 32 MB for
 /// itself: what a frame needs for a moment, as much again as the particles, would stay for the whole run.
@@ -46,8 +42,9 @@ void print_info() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  wait_gently(argv);
   give_back_large_arrays();
-  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // lines reach a log file or a pipe as they are printed
+  survive_lost_output();
   CLI::App app{
       "vsb: material point method with tractions by the virtual stress boundary method.\n\n"
       "A scene is a TOML file; the ones to start from lie in apps/scenes. A typical session:\n"
@@ -70,7 +67,7 @@ int main(int argc, char** argv) {
     command
         ->add_option("--threads", threads,
                      "Number of threads (default: OMP_NUM_THREADS, else as many as pay)")
-        ->check(CLI::Range(1, 1024));
+        ->check(CLI::Range(1, 1'000'000));
   };
   const auto add_scene_options = [&](CLI::App* command) {
     command->add_option("scene", scene_path, "Scene file (TOML)")->required();
@@ -129,7 +126,7 @@ int main(int argc, char** argv) {
       if (study_options.directory.empty()) study_options.directory = "results/" + cases.name + "-study";
       check_threads(threads);
       study_options.run = [threads](const Scene& scene, const RunOptions& run_options) {
-        const KokkosSession kokkos(threads_for(scene, threads));
+        const KokkosSession kokkos(choose_threads(threads, [&] { return count_particles(scene); }).threads);
         return run_scene(scene, run_options);
       };
       return run_study(cases, study_options);
@@ -139,7 +136,9 @@ int main(int argc, char** argv) {
       throw SceneError("--static takes no steps, so there is none to --resume from; give one of the two");
     const Scene scene = read_scene(scene_path, overrides);
     if (options.directory.empty()) options.directory = "results/" + scene.name;
-    const KokkosSession kokkos(threads_for(scene, threads));
+    const auto choice = choose_threads(threads, [&] { return count_particles(scene); });
+    options.threads = choice.why;
+    const KokkosSession kokkos(choice.threads);
     if (*run) return run_scene(scene, options).code;
     if (*check) check_scene(scene);
     return exit_done;

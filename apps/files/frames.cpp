@@ -75,7 +75,7 @@ std::vector<double> equivalent_plastic_strain(const Snapshot& s) {
 void write_provenance(Hdf5Writer& file, const Scene& scene) {
   file.group("provenance");
   for (const auto& [name, value] : build_info()) file.attribute("provenance", name, value);
-  file.attribute("provenance", "scene", scene.resolved);
+  file.text("provenance/scene", scene.resolved);
 }
 
 void write_particle_frame(const std::string& path, const Scene& scene, const ParticleReader& particles) {

@@ -18,11 +18,26 @@ namespace vsb::app {
 
 namespace {
 
+/// `what`, and what the system said of the call of HDF5 that just failed, where it said something.
+std::string with_reason(const std::string& what) {
+  std::string reason;
+  const auto look = [](unsigned, const H5E_error2_t* entry, void* found) -> herr_t {
+    const std::string text = entry->desc ? entry->desc : "", before = "error message = '";
+    const auto at = text.find(before);
+    if (at != std::string::npos)
+      *static_cast<std::string*>(found) =
+          text.substr(at + before.size(), text.rfind('\'') - at - before.size());
+    return 0;
+  };
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, look, &reason);
+  return reason.empty() ? what : fmt::format("{} ({})", what, reason);
+}
+
 /// An HDF5 identifier that closes itself.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t), const std::string& what) : id_(id), close_(close) {
-    if (id < 0) throw FileError(what);
+    if (id < 0) throw FileError(with_reason(what));
   }
   ~Handle() { close_(id_); }
   Handle(const Handle&) = delete;
@@ -35,7 +50,7 @@ class Handle {
 };
 
 void check(herr_t status, const std::string& what) {
-  if (status < 0) throw FileError(what);
+  if (status < 0) throw FileError(with_reason(what));
 }
 
 hid_t memory_type(double) {
@@ -71,21 +86,33 @@ void flush_to_disk(const std::string& path) {
   ::close(descriptor);
 }
 
-void put_in_place(const std::string& temporary, const std::string& path) {
-  flush_to_disk(temporary);
-  std::error_code error;
-  std::filesystem::rename(temporary, path, error);
-  if (error) throw FileError(fmt::format("{}: {}", path, error.message()));
-  const auto directory = std::filesystem::path(path).parent_path();
-  flush_to_disk(directory.empty() ? "." : directory.string());
+/// Before anything else of HDF5. Its handler at exit writes what a file that could not be closed still holds,
+/// and crashes where that fails again.
+void prepare_hdf5() {
+  [[maybe_unused]] static const herr_t once = H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
 }  // namespace
 
+void put_in_place(const std::string& temporary, const std::string& path) {
+  try {
+    flush_to_disk(temporary);
+    std::error_code error;
+    std::filesystem::rename(temporary, path, error);
+    if (error) throw FileError(fmt::format("{}: {}", path, error.message()));
+  } catch (const FileError&) {
+    std::remove(temporary.c_str());
+    throw;
+  }
+  const auto directory = std::filesystem::path(path).parent_path();
+  flush_to_disk(directory.empty() ? "." : directory.string());
+}
+
 Hdf5Writer::Hdf5Writer(std::string path) : path_(std::move(path)), temporary_(path_ + ".part") {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  prepare_hdf5();
   file_ = H5Fcreate(temporary_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-  if (file_ < 0) throw FileError(fmt::format("{}: cannot create the file", temporary_));
+  if (file_ < 0) throw FileError(with_reason(fmt::format("{}: cannot create the file", temporary_)));
 }
 
 Hdf5Writer::~Hdf5Writer() {
@@ -209,18 +236,36 @@ void Hdf5Writer::attribute(const std::string& group, const std::string& name, co
   check(H5Awrite(attribute, type, text.c_str()), what);
 }
 
-void Hdf5Writer::commit() {
+void Hdf5Writer::text(const std::string& name, const std::string& text) {
+  const std::string what = fmt::format("{}: cannot write {}", path_, name);
+  const hsize_t one = 1;
+  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose, what);
+  check(H5Tset_size(type, std::max<size_t>(1, text.size())), what);
+  check(H5Tset_strpad(type, H5T_STR_NULLPAD), what);
+  check(H5Tset_cset(type, H5T_CSET_UTF8), what);
+  const Handle space(H5Screate_simple(1, &one, nullptr), H5Sclose, what);
+  const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, what);
+  check(H5Pset_obj_track_times(properties, false), what);
+  check(H5Pset_chunk(properties, 1, &one), what);
+  check(H5Pset_deflate(properties, 4), what);
+  const Handle set(H5Dcreate2(file_, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT),
+                   H5Dclose, what);
+  check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()), what);
+}
+
+std::string Hdf5Writer::finish() {
   const herr_t status = H5Fclose(file_);
   file_ = -1;
   if (status < 0) {
+    const FileError error(with_reason(fmt::format("{}: cannot finish the file", path_)));
     std::remove(temporary_.c_str());
-    throw FileError(fmt::format("{}: cannot finish the file (is the disk full?)", path_));
+    throw error;
   }
-  put_in_place(temporary_, path_);
+  return temporary_;
 }
 
 Hdf5Reader::Hdf5Reader(const std::string& path) : path_(path) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  prepare_hdf5();
   file_ = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (file_ < 0) throw FileError(fmt::format("{}: cannot be opened as an HDF5 file", path));
 }
@@ -252,14 +297,16 @@ std::vector<std::int64_t> Hdf5Reader::integers(const std::string& group, const s
   return values;
 }
 
-std::string Hdf5Reader::text(const std::string& group, const std::string& attribute) const {
-  const std::string what = fmt::format("{}: cannot read attribute {} of {}", path_, attribute, group);
-  const Handle a(H5Aopen_by_name(file_, group.c_str(), attribute.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
-                 what);
-  const Handle type(H5Aget_type(a), H5Tclose, what);
-  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0) throw FileError(what);
+std::string Hdf5Reader::text(const std::string& name) const {
+  const std::string what = fmt::format("{}: cannot read {}", path_, name);
+  const Handle set(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose, what);
+  const Handle space(H5Dget_space(set), H5Sclose, what);
+  const Handle type(H5Dget_type(set), H5Tclose, what);
+  if (H5Sget_simple_extent_npoints(space) != 1 || H5Tget_class(type) != H5T_STRING ||
+      H5Tis_variable_str(type) != 0)
+    throw FileError(what);
   std::string value(H5Tget_size(type), '\0');
-  check(H5Aread(a, type, value.data()), what);
+  check(H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, value.data()), what);
   return value.substr(0, value.find('\0'));
 }
 
@@ -310,11 +357,13 @@ void write_text_file(const std::string& path, const std::string& text) {
   const std::string temporary = path + ".part";
   {
     std::ofstream out(temporary, std::ios::binary);
+    errno = 0;
     out << text;
     out.close();
     if (!out) {
+      const FileError error(fmt::format("{}: cannot be written ({})", path, std::strerror(errno)));
       std::remove(temporary.c_str());
-      throw FileError(fmt::format("{}: cannot be written", path));
+      throw error;
     }
   }
   put_in_place(temporary, path);

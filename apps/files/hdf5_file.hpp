@@ -18,6 +18,10 @@ struct FileError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Renames a file that is complete onto its final path, after flushing it to the disk. Where that fails, it
+/// removes the file and throws FileError.
+void put_in_place(const std::string& temporary, const std::string& path);
+
 /// An array of a file, written in order, in as many parts as one likes.
 template <class T>
 class Hdf5Rows {
@@ -65,11 +69,16 @@ class Hdf5Writer {
   void dataset(const std::string& name, const std::vector<T>& values, const std::vector<size_t>& shape);
   void attribute(const std::string& group, const std::string& name, const std::vector<std::int64_t>& values);
   void attribute(const std::string& group, const std::string& name, const std::vector<double>& values);
-  /// A fixed-length ASCII string, the only kind that VTK reads.
+  /// A fixed-length ASCII string, the only kind that VTK reads. Less than 64 KiB, as all attributes of an
+  /// object together.
   void attribute(const std::string& group, const std::string& name, const std::string& text);
+  /// A string of any length, as an array of one fixed-length string, compressed.
+  void text(const std::string& name, const std::string& text);
 
-  /// Flushes to the disk and renames onto the final path.
-  void commit();
+  /// Ends the file; whoever calls has it from then on, under the temporary name that is returned.
+  std::string finish();
+  /// Ends the file and puts it in place.
+  void commit() { put_in_place(finish(), path_); }
 
  private:
   std::string path_, temporary_;
@@ -87,7 +96,8 @@ class Hdf5Reader {
 
   std::vector<unsigned char> bytes(const std::string& name) const;
   std::vector<std::int64_t> integers(const std::string& group, const std::string& attribute) const;
-  std::string text(const std::string& group, const std::string& attribute) const;
+  /// What Hdf5Writer::text wrote.
+  std::string text(const std::string& name) const;
 
  private:
   friend class Hdf5Bytes;

@@ -3,7 +3,7 @@
 /// What a run leaves behind: frames that ParaView opens, a checkpoint, and a summary.
 ///   NAME_000123.hdf, NAME.hdf.series   particles, VTKHDF 1.0 (vertex cells); the index gives the times
 ///   NAME_grid_000123.hdf, ...          nodal fields on the mesh of the grid's cells, on request
-///   NAME.checkpoint                    the last complete state of a run that is not at its end
+///   NAME.checkpoint, ...               the last complete states, see files/checkpoints.hpp
 ///   summary.json
 #pragma once
 
@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "files/checkpoints.hpp"
+#include "files/directory_lock.hpp"
 #include "run/simulation.hpp"
 
 namespace vsb::app {
@@ -22,22 +24,16 @@ class Results {
   /// Names the directory; nothing is touched yet.
   Results(std::string directory, const Scene& scene);
 
-  /// Creates the directory and removes what an earlier run of this scene left there. A resumed run keeps the
-  /// frames up to the step it resumes from; any other starts with `resumed_step` -1. Throws FileError.
-  void begin(long long resumed_step);
+  /// Creates the directory and keeps other processes out of it. Throws FileError where one is in it.
+  void claim();
+  /// Claims the directory, where that has not been done, and removes what an earlier run of this scene left
+  /// there. A resumed run keeps the frames up to the step it resumes from; any other starts with
+  /// `resumed_step` -1 and keeps a checkpoint aside, or else removes it. Throws FileError.
+  void begin(long long resumed_step, bool keep_checkpoint_aside = true);
 
   void write_frame(const ParticleReader& particles);
   void write_grid_frame(const GridSnapshot& grid, long long step, double time);
-  /// `saved` and the particles of the simulation.
-  void write_checkpoint(const SavedState& saved, Simulation& simulation);
-  /// The state to resume from; none where there is no checkpoint. Throws FileError for one that is damaged or
-  /// was written by another scene.
-  std::optional<SavedState> read_checkpoint() const;
-  /// The particles of that state.
-  std::unique_ptr<ByteSource> read_checkpoint_particles() const;
-  /// The step of the checkpoint; none where there is none that can be read.
-  std::optional<long long> checkpoint_step() const;
-  void remove_checkpoint();
+  Checkpoints& checkpoints() { return checkpoints_; }
   void write_summary(const std::string& json);
 
   const std::string& directory() const { return directory_; }
@@ -48,7 +44,6 @@ class Results {
     std::vector<std::pair<std::string, double>> frames;  ///< file name, time
   };
   std::string path(const std::string& name) const { return directory_ + "/" + name; }
-  std::string checkpoint_path() const { return path(scene_.name + ".checkpoint"); }
   void begin(Series& series, long long resumed_step);
   void add_to_index(Series& series, const std::string& file, double time);
   void write_index(const Series& series) const;
@@ -56,6 +51,8 @@ class Results {
   std::string directory_;
   const Scene& scene_;
   Series particles_, grid_;
+  Checkpoints checkpoints_;
+  std::optional<DirectoryLock> lock_;
 };
 
 }  // namespace vsb::app

@@ -7,6 +7,7 @@ namespace vsb::app {
 
 namespace {
 
+constexpr std::array<int, 3> signals = {SIGINT, SIGTERM, SIGHUP};
 volatile std::sig_atomic_t requested = 0;
 int guards = 0;
 
@@ -20,15 +21,21 @@ bool interrupt_requested() {
   return requested != 0;
 }
 
+bool request_interrupt() {
+  requested = 1;
+  return guards > 0;
+}
+
 InterruptGuard::InterruptGuard() {
   if (guards++ == 0) requested = 0;
-  before_int_ = std::signal(SIGINT, on_signal);
-  before_term_ = std::signal(SIGTERM, on_signal);
+  for (size_t n = 0; n < signals.size(); ++n) {
+    before_[n] = std::signal(signals[n], on_signal);
+    if (signals[n] == SIGHUP && before_[n] == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
+  }
 }
 
 InterruptGuard::~InterruptGuard() {
-  std::signal(SIGINT, before_int_);
-  std::signal(SIGTERM, before_term_);
+  for (size_t n = 0; n < signals.size(); ++n) std::signal(signals[n], before_[n]);
   --guards;
 }
 

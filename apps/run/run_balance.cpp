@@ -9,7 +9,7 @@ RunResult run_balance(const Scene& scene, const RunOptions& options) {
   refuse_unsettled_loads(scene, "a balance under the final loads");
   const auto simulation = make_simulation(scene);
   Results results(options.directory, scene);
-  results.begin(-1);
+  results.begin(-1, !options.progress_only);
   RunFigures figures;
   figures.solution = Solution::balance;
   const double settled = loads_settled_at(scene);

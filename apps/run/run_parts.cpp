@@ -45,15 +45,6 @@ void print_advice(const Scene& scene, const Simulation& simulation) {
   for (const auto& advice : simulation.advice()) fmt::print(stderr, "vsb: warning: {}\n", advice);
 }
 
-void announce_discarded_checkpoint(const Results& results) {
-  if (const auto step = results.checkpoint_step())
-    fmt::print(
-        stderr,
-        "vsb: discarding the checkpoint of step {} in {} (with --resume the run would have gone on from "
-        "it)\n",
-        *step, results.directory());
-}
-
 void write_frames(Results& results, const Scene& scene, Simulation& simulation) {
   simulation.check_health();
   results.write_frame(*read_particles(scene, simulation));

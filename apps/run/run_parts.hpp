@@ -18,9 +18,6 @@ void refuse_unsettled_loads(const Scene& scene, const std::string& who);
 /// Prints the advice about a scene and its simulation as warnings on standard error.
 void print_advice(const Scene& scene, const Simulation& simulation);
 
-/// Says which checkpoint a run that does not resume will remove, where there is one.
-void announce_discarded_checkpoint(const Results& results);
-
 /// Writes the frames of the present state. Throws Diverged for one that is not healthy.
 void write_frames(Results& results, const Scene& scene, Simulation& simulation);
 

@@ -39,6 +39,33 @@ long long next_stop(const Scene& scene, long long step, long long last) {
   return stop;
 }
 
+/// When another checkpoint is due: a first one after a minute, later ones at longer intervals.
+class CheckpointClock {
+ public:
+  explicit CheckpointClock(double minutes) : minutes_(minutes) {}
+
+  bool due() const { return minutes_ > 0 && seconds_since(last_) > 60 * (any_ ? minutes_ : first()); }
+  void written() {
+    last_ = Clock::now();
+    any_ = true;
+  }
+
+ private:
+  double first() const { return std::min(1.0, minutes_); }
+
+  double minutes_;
+  bool any_ = false;
+  Clock::time_point last_ = Clock::now();
+};
+
+/// Refuses to go on from a step behind the last one.
+void refuse_end_before(const Scene& scene, long long step, long long last) {
+  if (step > last)
+    throw SetupError(fmt::format("the checkpoint is of step {}, and {} = {} ends the run before it", step,
+                                 scene.time.until_static ? "time.until_static.max_steps" : "time.steps",
+                                 scene.time.steps));
+}
+
 bool is_static(const StaticCriterion& c, const BalanceReport& b) {
   return b.force_ratio <= c.force_ratio && b.energy_ratio <= c.energy_ratio;
 }
@@ -84,34 +111,42 @@ RunResult run(const Scene& scene, const RunOptions& options) {
   std::optional<Stages> stages;
   if (scene.removal) stages.emplace(scene, *simulation);
   TractionWatch watch(scene, *simulation);
+  const auto last_step = [&] { return (stages ? stages->first_step() : 0) + scene.time.steps; };
   Results results(options.directory, scene);
+  results.claim();
+  auto& checkpoints = results.checkpoints();
   long long resumed_step = -1;
   if (options.resume) {
-    if (const auto saved = results.read_checkpoint()) {
-      simulation->restore(*saved, *results.read_checkpoint_particles());
+    if (const auto saved = checkpoints.read()) {
+      simulation->restore(*saved, *checkpoints.read_particles());
       if (stages) {
         stages->restore(saved->staged);
         watch.begin();
       }
       resumed_step = saved->step;
+      refuse_end_before(scene, resumed_step, last_step());
     } else if (!options.progress_only) {
       fmt::print(stderr, "vsb: no checkpoint in {}; starting from step 0\n", options.directory);
     }
-  } else if (!options.progress_only) {
-    announce_discarded_checkpoint(results);
   }
   const InterruptGuard guard;  // from the first file on
-  results.begin(resumed_step);
+  results.begin(resumed_step, !options.progress_only);
   const bool reports = !options.quiet && !options.progress_only;
   if (!options.progress_only) print_advice(scene, *simulation);
   if (reports) {
     fmt::print("{}: {} particles, {} boundary nodes, dt {:.6g} s, {} {} steps, results in {}\n", scene.name,
                simulation->particle_count(), simulation->boundary_nodes(), scene.time.dt,
                scene.time.until_static ? "at most" : "exactly", scene.time.steps, options.directory);
+    if (!options.threads.empty()) fmt::print("{}\n", options.threads);
     if (resumed_step >= 0) fmt::print("resumed at step {}\n", resumed_step);
     std::fflush(stdout);  // who reads a pipe sees that the run has begun
   }
-  if (resumed_step < 0) write_frames(results, scene, *simulation);
+  long long framed_step = -1;
+  const auto write_frame = [&] {
+    write_frames(results, scene, *simulation);
+    framed_step = simulation->step();
+  };
+  if (resumed_step < 0) write_frame();
 
   Progress progress(options.quiet, simulation->particle_count());
   const auto& criterion = scene.time.until_static;
@@ -119,15 +154,34 @@ RunResult run(const Scene& scene, const RunOptions& options) {
   const long long first_step = simulation->step();
   const double settled = loads_settled_at(scene);
   RunFigures figures;
-  auto last_checkpoint = Clock::now();
+  CheckpointClock clock(scene.output.checkpoint_minutes);
   bool found_static = false, diverged = false, done = false;
   double seconds_before_stage = 0;
-  const auto last_step = [&] { return (stages ? stages->first_step() : 0) + scene.time.steps; };
   const auto stage_seconds = [&] { return figures.seconds - seconds_before_stage; };
   const auto write_checkpoint = [&] {
     auto saved = simulation->saved_state();
     if (stages) saved = stages->with_stages(std::move(saved), stage_seconds());
-    results.write_checkpoint(saved, *simulation);
+    checkpoints.write(saved, *simulation);
+    clock.written();
+  };
+  // Whether the run, or its stage, is over at this step; called where checks are due.
+  const auto ends_here = [&] {
+    const long long step = simulation->step();
+    bool failed = false;
+    if (criterion && step % criterion->check_every == 0) {
+      const bool constant_loads = simulation->load_time() >= settled;
+      if (constant_loads) {
+        const auto balance = simulation->balance();
+        found_static = is_static(*criterion, balance);
+        forecast.observe(step, balance.force_ratio);
+      }
+      if (stages) {
+        const auto signs = stages->look(constant_loads);
+        found_static = found_static || signs == Stages::Signs::settled;
+        failed = signs == Stages::Signs::failed;
+      }
+    }
+    return found_static || failed || step >= last_step();
   };
   // Ends a stage of a run that removes particles, and sets out on the next one.
   const auto end_stage = [&] {
@@ -143,7 +197,6 @@ RunResult run(const Scene& scene, const RunOptions& options) {
     forecast = StaticForecast(*criterion);
     watch.begin();
     write_checkpoint();
-    last_checkpoint = Clock::now();
     return false;
   };
   const auto look_at_tractions = [&] {
@@ -153,6 +206,9 @@ RunResult run(const Scene& scene, const RunOptions& options) {
     }
   };
   try {
+    // A run that was over may go on if its end has changed since; one that was interrupted was not over.
+    if (resumed_step >= 0 && !(stages && resumed_step == stages->first_step())) done = ends_here();
+    if (done && stages) done = end_stage();
     while (!done) {
       const auto begin = Clock::now();
       const long long stop = next_stop(scene, simulation->step(), last_step());
@@ -166,32 +222,16 @@ RunResult run(const Scene& scene, const RunOptions& options) {
       const long long step = simulation->step();
       if (step % health_interval == 0 || interrupt_requested()) simulation->check_health();
       if (step % health_interval == 0 || step >= last_step()) look_at_tractions();
-      bool failed = false;
-      if (criterion && step % criterion->check_every == 0) {
-        const bool constant_loads = simulation->load_time() >= settled;
-        if (constant_loads) {
-          const auto balance = simulation->balance();
-          found_static = is_static(*criterion, balance);
-          forecast.observe(step, balance.force_ratio);
-        }
-        if (stages) {
-          const auto signs = stages->look(constant_loads);
-          found_static = found_static || signs == Stages::Signs::settled;
-          failed = signs == Stages::Signs::failed;
-        }
-      }
-      if (scene.output.every > 0 && step % scene.output.every == 0) write_frames(results, scene, *simulation);
-      if (scene.output.checkpoint_minutes > 0 &&
-          seconds_since(last_checkpoint) > 60 * scene.output.checkpoint_minutes) {
+      done = ends_here();
+      if (scene.output.every > 0 && step % scene.output.every == 0) write_frame();
+      if (!done && clock.due()) {
         simulation->check_health();
         write_checkpoint();
-        last_checkpoint = Clock::now();
       }
       if (progress.due())
         progress.report(step, step - first_step, figures.seconds,
                         criterion ? forecast.end() : scene.time.steps, simulation->balance().force_ratio,
                         criterion.has_value());
-      done = found_static || failed || step >= last_step();
       if (done && stages) done = end_stage();
       // What is due at this step has been done by now: the run that goes on begins with the next one.
       if (!done && interrupt_requested()) {
@@ -224,14 +264,16 @@ RunResult run(const Scene& scene, const RunOptions& options) {
   figures.tractions = watch.report();
   if (stages) figures.stages = stages->report();
   if (!diverged) {
-    if (!stages && (scene.output.every == 0 || simulation->step() % scene.output.every != 0))
-      write_frames(results, scene, *simulation);
+    if (!stages && framed_step != simulation->step()) write_frame();
     take_state(figures, scene, *simulation);
   } else {
     figures.particles = simulation->particle_count();
   }
   results.write_summary(summary_json(scene, figures));
-  results.remove_checkpoint();
+  if (options.progress_only)
+    checkpoints.remove();  // a study has done with the case
+  else if (!diverged && !(figures.steps == resumed_step && checkpoints.last_is_whole()))
+    write_checkpoint();
   if (reports) print_report(scene, figures);
   if (!scene.time.until_static || found_static || stages) return {exit_done, figures};
   if (!options.progress_only)

@@ -27,6 +27,7 @@ struct RunOptions {
   bool quiet = false;
   bool progress_only = false;  ///< print neither head nor report: the caller does
   Solution solution = Solution::steps;
+  std::string threads;  ///< how many, and why, for the screen
   bool resume = false;  ///< continue from the directory's checkpoint, if there is one
 };
 

@@ -51,7 +51,6 @@ RunResult run_static(const Scene& scene, const RunOptions& options) {
   refuse_moving_scenes(scene);
   const auto simulation = make_simulation(scene);
   Results results(options.directory, scene);
-  if (!options.progress_only) announce_discarded_checkpoint(results);
   const InterruptGuard guard;
   const bool reports = !options.quiet && !options.progress_only;
   Scene without_steps = scene;
@@ -62,6 +61,7 @@ RunResult run_static(const Scene& scene, const RunOptions& options) {
         "{}: {} particles, {} boundary nodes, static solution under the loads at {:.6g} s, results in {}\n",
         scene.name, simulation->particle_count(), simulation->boundary_nodes(), loads_settled_at(scene),
         options.directory);
+  if (reports && !options.threads.empty()) fmt::print("{}\n", options.threads);
 
   Progress progress(options.quiet, simulation->particle_count());
   RunFigures figures;
@@ -104,7 +104,7 @@ RunResult run_static(const Scene& scene, const RunOptions& options) {
         "cells' shape (2 per cell and direction at least), or the load is too large for --static\n",
         moved, moved / h);
 
-  results.begin(-1);
+  results.begin(-1, !options.progress_only);
   write_frames(results, scene, *simulation);
   figures.found_static = true;
   figures.balance = solution.balance;

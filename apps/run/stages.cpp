@@ -53,16 +53,23 @@ void Stages::restore(const StagedState& saved) {
     if (present_[id] != 0) settled_.push_back((saved.present[id] & had_failed) != 0);
   }
   report_ = stages_of_toml(saved.stages);
+  if (report_.stages.empty()) throw SetupError("the checkpoint is damaged: it has no stage");
   // The last one is the stage that was under way; see with_stages.
   first_step_ = report_.stages.back().first_step;
   settled_step_ = report_.stages.back().last_step;
   last_count_ = report_.stages.back().failed;
   seconds_before_ = report_.stages.back().seconds;
   report_.stages.pop_back();
+  if (settled_step_ == first_step_) settled_.clear();  // nobody has looked at the particles yet
 }
 
 SavedState Stages::with_stages(SavedState saved, double seconds) const {
   auto report = report_;
+  if (!report.outcome.empty()) {  // the last stage: with another end, the run goes on in it
+    report.stages.pop_back();
+    report.outcome.clear();
+    report.reason.clear();
+  }
   auto under_way = present_stage(seconds);
   under_way.last_step = settled_step_;
   under_way.failed = last_count_;

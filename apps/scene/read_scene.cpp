@@ -290,7 +290,8 @@ OutputSpec read_output(TableReader r, const Scene& scene) {
     r.fail(*r.source().get("fields"), "fields", fmt::format("'{}' {}", allowed.back(), recovery_is_linear));
   o.grid = r.boolean("grid", false);
   o.checkpoint_minutes =
-      r.number("checkpoint_minutes", Range::at_least(0), 10.0, "wall time; 0: at an interrupt only");
+      r.number("checkpoint_minutes", Range::at_least(0), 10.0,
+               "wall time; the first after one minute at the latest; 0: at an interrupt and the end only");
   r.finish();
   return o;
 }
@@ -410,6 +411,12 @@ bool is_loaded(const Scene& scene) {
          std::any_of(scene.bodies.begin(), scene.bodies.end(), begins_loaded);
 }
 
+/// Whether files may have this name, and another word behind it.
+bool is_file_name(const std::string& name) {
+  const auto bad = [](unsigned char c) { return c <= ' ' || c == 127 || c == '/' || c == '\\'; };
+  return !name.empty() && name.size() <= 200 && name[0] != '.' && std::none_of(name.begin(), name.end(), bad);
+}
+
 }  // namespace
 
 Scene read_scene(const std::string& path, const std::vector<std::string>& overrides) {
@@ -420,9 +427,9 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
                 "traction", "method", "time", "static", "removal", "output", "compare", "published"});
   Scene scene;
   scene.name = r.text("name", std::filesystem::path(path).stem().string());
-  if (scene.name.empty() || scene.name.find_first_of("/\\ \t\n") != std::string::npos ||
-      scene.name[0] == '.') {
-    const std::string what = "must be usable as a file name: not empty, no space or slash, no leading dot";
+  if (!is_file_name(scene.name)) {
+    const std::string what =
+        "must be usable as a file name: 1 to 200 printable characters, no space or slash, no leading dot";
     if (const auto* node = document.get("name")) r.fail(*node, "name", what);
     r.missing("name", what);
   }

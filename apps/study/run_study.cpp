@@ -6,10 +6,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <optional>
 
-#include "files/hdf5_file.hpp"
+#include "files/directory_lock.hpp"
 #include "run/interrupt.hpp"
 #include "run/progress.hpp"
 #include "scene/toml_reader.hpp"
@@ -88,7 +87,7 @@ class StudyRun {
 
   ExitCode run() {
     const InterruptGuard guard;
-    create_directory();
+    const DirectoryLock lock(options_.directory);
     say("{}: {} cases, results in {}\n", study_.title, tasks_.size(), options_.directory);
     for (size_t t = 0; t < tasks_.size(); ++t) {
       const bool earlier = tasks_[t].done();
@@ -147,14 +146,6 @@ class StudyRun {
                                     [](const Task& task) { return task.done(); });
     say("cases {} to {} of {}: {} ({} done before; {} used)\n", first + 1, first + count, tasks_.size(),
         study_.series[tasks_[first].series].name, done, duration_text(seconds()));
-  }
-
-  void create_directory() const {
-    std::error_code error;
-    std::filesystem::create_directories(options_.directory, error);
-    if (error)
-      throw FileError(
-          fmt::format("{}: cannot create the directory ({})", options_.directory, error.message()));
   }
 
   double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
