@@ -140,7 +140,8 @@ class Output(StaticTest):
         out = self.folder / "cylinder"
         self.run_scene("cylinder", "--set", "time.until_static.max_steps=100")  # leaves frames 0 and 100
         done = vsb("run", SCENES / "cylinder.toml", "--static", "--out", out, "--set", "output.grid=true", "--set", "output.every=10")
-        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(done.returncode, 0)
+        self.assertRegex(done.stderr, r"\Avsb: keeping the checkpoint that was there as \S*/cylinder\.checkpoint\.step-100 \(.*\)\n\Z")
         self.assertIn("static solution under the loads at 0.2 s", done.stdout)
         self.assertRegex(done.stdout, r"iteration \d+, relative residual \d\.\d\de-1[0-9]\n")
         self.assertRegex(done.stdout, r"\d+ iterations in [\d.e-]+ s: [\d.]+ ns per particle and iteration")
@@ -160,7 +161,7 @@ class Output(StaticTest):
         undamped = ("--set", "method.damping=0.0", "--set", "grid.spacing=0.5", "--set", "time.until_static.max_steps=1")
         run = lambda *more: vsb("run", SCENES / "cylinder.toml", "--quiet", "--out", self.folder / "c", *undamped, *more).stderr
         self.assertIn("damping = 0", run())
-        self.assertEqual(run("--static"), "")
+        self.assertNotIn("damping", run("--static"))
 
     def test_large_strains_are_warned_about(self):
         soft = ("--set", "body[0].material.youngs_modulus=1e6")
