@@ -4,7 +4,8 @@
 ///   K u = f,   K as in kernels/stiffness.hpp,   f_I of kernels/assemble_forces.hpp,
 /// where f counts the loads, the weight and the initial stress of the particles at their initial positions;
 /// then
-///   sigma_p <- sigma_p + C : sym sum_I u_I (x) grad N_Ip,   x_p <- x_p + sum_I N_Ip u_I.
+///   sigma_p <- sigma_p + C : sym sum_I u_I (x) grad N_Ip,   x_p <- x_p + sum_I N_Ip u_I,
+/// with the mean divergence where K has it.
 /// Volumes stay, and so do the directions of an initial stress: both change by the order of the strain.
 ///
 /// The conjugate gradient method, preconditioned by the blocks K_II. Its residual is measured in the norm of
@@ -137,9 +138,12 @@ struct StrainParticle {
   typename Nodes<Dim, Real, Device>::Fields u;
   Basis basis;
   LinearElastic<Real> material;
+  typename MeanDivergence<Real, Device>::Numbers mean;  ///< [particle]: thetabar, where beta is not 0
+  Real beta;
 
   KOKKOS_FUNCTION void operator()(int p, Real& largest) const {
-    const auto G = basis.shape(particles.position_of(p)).gradient(u);
+    auto G = basis.shape(particles.position_of(p)).gradient(u);
+    if (beta > Real(0)) G = with_mean_divergence(G, mean(p), beta);
     const auto sigma = material.strained(particles.stress_of(p), G, Real(1));
     const auto strain = strain_increment(G, Real(1));
     for (int c = 0; c < SymmetricTensor<Dim, Real>::size; ++c) {
@@ -220,19 +224,22 @@ StaticResult solve_displacement(const Exec& exec, Stiffness<Basis, Dim, Real, De
   return result;
 }
 
-/// Gives the particles the stress of the displacements u, at the positions where u was solved for. Returns
-/// the largest strain component, so it waits for the device.
+/// Gives the particles the stress of the displacements u, at the positions where u was solved for; `mean` is
+/// Stiffness::average(u). Returns the largest strain component, so it waits for the device.
 template <class Exec, class Basis, int Dim, class Real, class Device>
 double strain_particles(const Exec& exec, const Particles<Dim, Real, Device>& particles,
                         const std::vector<Body<Real>>& bodies, const Basis& basis,
-                        const typename Nodes<Dim, Real, Device>::Fields& u) {
+                        const typename Nodes<Dim, Real, Device>::Fields& u,
+                        const MeanDivergence<Real, Device>& mean = {}) {
   double largest = 0;
   for (const auto& body : bodies) {
     Real of_body = 0;
-    Kokkos::parallel_reduce("vsb::strain_particles", Kokkos::RangePolicy<Exec>(exec, body.first, body.last),
-                            kernel::StrainParticle<Basis, Dim, Real, Device>{particles, u, basis,
-                                                                             small_strain_law(body.material)},
-                            Kokkos::Max<Real>(of_body));
+    const auto material = small_strain_law(body.material);
+    Kokkos::parallel_reduce(
+        "vsb::strain_particles", Kokkos::RangePolicy<Exec>(exec, body.first, body.last),
+        kernel::StrainParticle<Basis, Dim, Real, Device>{particles, u, basis, material, mean.of_particle,
+                                                         share_of<Dim>(mean, material)},
+        Kokkos::Max<Real>(of_body));
     exec.fence();
     if (body.last > body.first) largest = math::max(largest, static_cast<double>(of_body));
   }

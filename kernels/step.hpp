@@ -21,6 +21,7 @@ struct State {
   SurfacePoints<Dim, Real, Device> surface;  ///< none, unless a traction is imposed on points
   ForceWorkspace<Real, Device> sums_workspace;
   ScatterWorkspace<Real, Device> remap_workspace;
+  MeanDivergence<Real, Device> mean_divergence;  ///< empty unless steps average
   bool weighed = false;  ///< whether the particles have been found to have masses and volumes
 };
 
@@ -45,6 +46,7 @@ struct StepOptions {
   Vector<Dim, Real> gravity = Vector<Dim, Real>::zero();  ///< m/s^2
   VolumeUpdate volume_update = DeterminantVolume{};
   Scatter scatter = Scatter::gathered;
+  Volumetric volumetric = Volumetric::full;
 };
 
 /// Refuses what no step can be made with.
@@ -101,7 +103,11 @@ int step(const Exec& exec, State<Dim, Real, Device>& s, const std::vector<Body<R
   update_nodes(exec, s.nodes, basis, options.damping, options.dt);
   grid_to_particles(exec, s.particles, s.nodes, basis, options.dt);
   remap_velocity(exec, s.particles, s.occupancy.bins, s.nodes, s.remap_workspace, basis, options.scatter);
-  update_stress(exec, s.particles, s.nodes, bodies, basis, options.volume_update, options.dt);
+  if (options.volumetric == Volumetric::averaged)
+    average_divergence(exec, s.particles, s.occupancy.bins, s.nodes.remapped_velocity, bodies, basis,
+                       s.mean_divergence, options.scatter);
+  update_stress(exec, s.particles, s.nodes, bodies, basis, options.volume_update, options.dt,
+                s.mean_divergence);
   move_surface_points(exec, s.surface, s.particles, s.nodes, basis, options.dt);
   return -1;
 }

@@ -3,13 +3,15 @@
 /// The end of the step on the particles, with the basis functions at the old positions:
 ///   L = sum_I v*_I (x) grad N_Ip,   sigma <- material(sigma, L dt),   V <- V det(I + dt L) or V exp(dt tr
 ///   L), x_p <- x_p + dt sum_I N_Ip v_I   (v_I: before the re-map; v*_I: after it).
+/// Against volumetric locking the divergence of L gives way to a mean (physics/mean_divergence.hpp).
 ///
-/// Reads both nodal velocities; writes positions, stresses and volumes, and the state of a material that has
-/// one.
+/// Reads both nodal velocities and the mean divergence; writes positions, stresses and volumes, and the state
+/// of a material that has one.
 #pragma once
 
 #include <algorithm>
 #include <vector>
+#include <vsb/kernels/average_divergence.hpp>
 #include <vsb/kernels/preconditions.hpp>
 #include <vsb/physics/material.hpp>
 #include <vsb/views/nodes.hpp>
@@ -27,12 +29,15 @@ struct UpdateStress {
   Material material;
   Volume volume;
   Real dt;               ///< s
-  int state_offset = 0;  ///< of Body
+  int state_offset;  ///< of Body
+  typename MeanDivergence<Real, Device>::Numbers mean;  ///< [particle]: thetabar, where beta is not 0
+  Real beta;
 
   KOKKOS_FUNCTION void operator()(int p) const {
     const auto x = particles.position_of(p);
     const auto shape = basis.shape(x);
-    const auto L = shape.gradient(nodes.remapped_velocity);
+    auto L = shape.gradient(nodes.remapped_velocity);
+    if (beta > Real(0)) L = with_mean_divergence(L, mean(p), beta);
     const auto v = shape.interpolate(nodes.velocity);
     const auto sigma = advance(p, L);
     for (int c = 0; c < SymmetricTensor<Dim, Real>::size; ++c) particles.cauchy_stress(p, c) = sigma[c];
@@ -54,14 +59,6 @@ struct UpdateStress {
 };
 
 }  // namespace kernel
-
-/// Particles first, ..., last - 1 and what they are made of.
-template <class Real>
-struct Body {
-  int first = 0, last = 0;
-  Material<Real> material;
-  int state_offset = 0;  ///< the state of particle p is row p + state_offset of Particles::material_state
-};
 
 /// Numbers that a material remembers per particle.
 template <int Dim, class Real>
@@ -113,11 +110,13 @@ void check_bodies(const std::vector<Body<Real>>& bodies, int particles) {
         "last particle)");
 }
 
-/// Updates the particles of all bodies; dt in s. Throws as check_material_state does.
+/// Updates the particles of all bodies; dt in s. `mean` is what average_divergence made of the re-mapped
+/// velocity; without it particles strain by their own divergence. Throws as check_material_state does.
 template <class Exec, class Basis, int Dim, class Real, class Device>
 void update_stress(const Exec& exec, const Particles<Dim, Real, Device>& particles,
                    const Nodes<Dim, Real, Device>& nodes, const std::vector<Body<Real>>& bodies,
-                   const Basis& basis, const VolumeUpdate& volume_update, Real dt) {
+                   const Basis& basis, const VolumeUpdate& volume_update, Real dt,
+                   const MeanDivergence<Real, Device>& mean = {}) {
   for (const auto& body : bodies) {
     check_material_state(particles, body);
     std::visit(
@@ -125,7 +124,8 @@ void update_stress(const Exec& exec, const Particles<Dim, Real, Device>& particl
           using Functor = kernel::UpdateStress<Basis, std::decay_t<decltype(material)>,
                                                std::decay_t<decltype(volume)>, Dim, Real, Device>;
           Kokkos::parallel_for("vsb::update_stress", Kokkos::RangePolicy<Exec>(exec, body.first, body.last),
-                               Functor{particles, nodes, basis, material, volume, dt, body.state_offset});
+                               Functor{particles, nodes, basis, material, volume, dt, body.state_offset,
+                                       mean.of_particle, share_of<Dim>(mean, material)});
         },
         body.material, volume_update);
   }

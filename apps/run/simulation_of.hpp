@@ -106,7 +106,9 @@ class SimulationOf final : public Simulation {
                  n.fixed_components, o.bins.bin, o.bins.order, o.bins.offset, o.bins.cursor, o.bins.slot,
                  o.bins.occupied, o.cells.occupied, o.cells.exterior, o.cells.boundary, o.cells.underfilled,
                  o.cells.outside, o.cells.carried.particle, o.cells.carried.cells, o.cells.carried.nodes,
-                 o.boundary, state.sums_workspace.particles.bin_sums, state.remap_workspace.bin_sums);
+                 o.boundary, state.sums_workspace.particles.bin_sums, state.remap_workspace.bin_sums,
+                 state.mean_divergence.of_particle, state.mean_divergence.of_function, state.mean_divergence.sums,
+                 state.mean_divergence.workspace.bin_sums);
   }
 
   void advance(long long steps) override {

@@ -42,17 +42,18 @@ StaticState<Dim, Real, Device> solve_static(const Exec& exec, const Scene& scene
   auto& u = found.displacement;
   u = typename Nodes<Dim, Real, Device>::Fields("vsb::node_displacement",
                                                 static_cast<size_t>(basis.node_count()), Dim);
+  Stiffness<Basis, Dim, Real, Device> stiffness(state.particles, bodies, basis, state.occupancy.bins,
+                                                options.scatter, options.volumetric);
   if (sum_of_forces(exec, state.nodes) > round_off) {
     const auto& wanted = scene.static_solution;
     refuse_unsupported(find_unsupported_load(exec, state.nodes, state.occupancy.bins, basis,
                                              std::max(wanted.residual, 1e-11)));
-    Stiffness<Basis, Dim, Real, Device> stiffness(state.particles, bodies, basis, state.occupancy.bins,
-                                                  options.scatter);
     found.result = solve_displacement(exec, stiffness, state.nodes, u,
                                       StaticOptions{wanted.residual, wanted.max_iterations}, go_on);
   }
   if (found.result.converged)
-    found.largest_strain = strain_particles(exec, state.particles, bodies, basis, u);
+    found.largest_strain =
+        strain_particles(exec, state.particles, bodies, basis, u, stiffness.average(exec, u));
   return found;
 }
 

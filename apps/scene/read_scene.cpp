@@ -15,6 +15,7 @@
 #include "scene/read_region.hpp"
 #include "scene/read_removal.hpp"
 #include "scene/read_stress_field.hpp"
+#include "scene/read_volumetric.hpp"
 #include "scene/scene.hpp"
 #include "scene/toml_reader.hpp"
 #include "scene/units.hpp"
@@ -216,6 +217,7 @@ void read_method(TableReader r, Scene& scene) {
                "tau: cells filled by less than 1 - tau count as boundary cells; 0: no such cells");
   m.void_filter = r.boolean("void_filter", false);
   read_moment_fit(r, scene);
+  read_volumetric(r, scene);
   m.allow_particles_on_grid_lines = r.boolean("allow_particles_on_grid_lines", false);
   r.finish();
 }

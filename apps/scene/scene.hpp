@@ -95,6 +95,7 @@ struct MethodSpec {
   double fill_criterion = 0;  ///< tau, see kernels/mark_underfilled_cells.hpp; 0: off
   bool void_filter = false;   ///< see kernels/filter_voids.hpp
   bool moment_fit = false;    ///< see run/moment_fit.hpp
+  bool averaged = false;      ///< particles strain by a mean divergence, see physics/mean_divergence.hpp
   bool allow_particles_on_grid_lines = false;
 };
 

@@ -103,6 +103,7 @@ void run_everything(const Basis& basis, const UniformGrid<Dim, double>& grid, Sc
     const Original original{pressure, grid, state.occupancy.cells, 1u, 2};
     REQUIRE(step(Exec(), state, bodies, basis, original, options) == -1);
   }
+  options.volumetric = Volumetric::averaged;
   REQUIRE(step(Exec(), state, bodies, basis, pressure, options) == -1);
   balance(Exec(), state, bodies, basis, pressure, options);
   balancing_force(Exec(), block.particles, pressure, 1u, grid.lower);
@@ -166,6 +167,9 @@ TEST_CASE("every label starts with vsb::") {
                              "allocation: vsb::material_state",
                              "reduce: vsb::find_invalid",
                              "scan: vsb::scan_offsets",
+                             "for: vsb::sum_divergence/nodes",
+                             "for: vsb::divide_by_volume",
+                             "for: vsb::interpolate_divergence",
                              "for: vsb::update_stress",
                              "for: vsb::load_surface_point",
                              "for: vsb::surface_force",

@@ -7,7 +7,7 @@
 #include <vsb/kernels/step.hpp>
 #include <vsb/kernels/unsupported_load.hpp>
 
-#include "support.hpp"
+#include "wide_bases.hpp"
 
 using namespace vsb;
 using namespace vsb::test;
@@ -71,8 +71,9 @@ struct TwoBodies {
               {count / 2, count, LinearElastic<double>::from_young(100, 0.4)}};
     REQUIRE(update_occupancy(Exec(), block.particles, state.occupancy, basis) == -1);
   }
-  Stiffness<Basis, Dim, double, Device> stiffness(Scatter strategy = Scatter::gathered) const {
-    return {block.particles, bodies, basis, state.occupancy.bins, strategy};
+  Stiffness<Basis, Dim, double, Device> stiffness(Scatter strategy = Scatter::gathered,
+                                                  Volumetric volumetric = Volumetric::full) const {
+    return {block.particles, bodies, basis, state.occupancy.bins, strategy, volumetric};
   }
 };
 
@@ -104,9 +105,9 @@ Matrix<Dim, double> random_matrix(Random& random) {
 
 /// `on_host` is the basis for work on the host.
 template <int Dim, class Basis>
-void check_stiffness(const Basis& basis, const Basis& on_host) {
+void check_stiffness(const Basis& basis, const Basis& on_host, Volumetric volumetric) {
   const TwoBodies<Dim, Basis> two(basis, 91);
-  auto K = two.stiffness();
+  auto K = two.stiffness(Scatter::gathered, volumetric);
   const int nodes = basis.node_count();
   const auto u = nodal_vectors<Dim>(nodes), v = nodal_vectors<Dim>(nodes), Ku = nodal_vectors<Dim>(nodes),
              Kv = nodal_vectors<Dim>(nodes);
@@ -222,11 +223,16 @@ Problem<2, LinearBasis<2, double>> plate(const Filled& filled) {
 TEMPLATE_TEST_CASE_SIG("the stiffness is symmetric, positive, and right for uniform strains", "",
                        ((int Dim), Dim), 1, 2, 3) {
   const LinearBasis<Dim, double> uniform{make_grid<Dim, double>()};
-  check_stiffness<Dim>(uniform, uniform);
+  const auto splines = WideBasis<QuadraticBSplineBasis<Dim, double>>::on(make_grid<Dim, double>());
   const auto mesh = make_distorted_mesh<Dim, double>(0.1);
   const auto on_host = make_distorted_mesh<Dim, double, Host>(0.1);
-  check_stiffness<Dim>(MappedLinearBasis<Dim, double>{mesh.grid},
-                       MappedLinearBasis<Dim, double>{on_host.grid});
+  // With the mean divergence, too: both bodies are in all cells, and each has a mean of its own.
+  for (const auto volumetric : {Volumetric::full, Volumetric::averaged}) {
+    check_stiffness<Dim>(uniform, uniform, volumetric);
+    check_stiffness<Dim>(splines, splines, volumetric);
+    check_stiffness<Dim>(MappedLinearBasis<Dim, double>{mesh.grid},
+                         MappedLinearBasis<Dim, double>{on_host.grid}, volumetric);
+  }
 }
 
 TEMPLATE_TEST_CASE_SIG("the blocks on the diagonal are those of the stiffness", "", ((int Dim), Dim), 1, 2,
