@@ -10,7 +10,7 @@ namespace vsb {
 /// Particles first, ..., last - 1 and what they are made of.
 template <class Real>
 struct Body {
-  int first, last;
+  int first = 0, last = 0;
   Material<Real> material;
   int state_offset = 0;  ///< the state of particle p is row p + state_offset of Particles::material_state
 };

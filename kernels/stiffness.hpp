@@ -106,8 +106,8 @@ class Stiffness {
     sum_over_bodies(exec, "vsb::stiffness_force", force_workspace_, force,
                     [&](const LinearElastic<Real>& material, int first, int last) {
                       return kernel::StiffnessForce<Basis, Dim, Real, Device>{
-                          particles_,  basis_, material, first, last, u, mean_.of_particle,
-                          share_of<Dim>(mean_, material)};
+                          particles_, basis_, material,          first,
+                          last,       u,      mean_.of_particle, share_of<Dim>(mean_, material)};
                     });
     fold_ghost_nodes(exec, basis_, force, 0);
   }
@@ -116,11 +116,11 @@ class Stiffness {
   template <class Exec>
   void diagonal_blocks(const Exec& exec, const Fields& block) {
     ScatterWorkspace<Real, Device> workspace;
-    sum_over_bodies(exec, "vsb::stiffness_block", workspace, block,
-                    [&](const LinearElastic<Real>& material, int first, int last) {
-                      return kernel::StiffnessBlock<Basis, Dim, Real, Device>{particles_, basis_, material,
-                                                                              first, last};
-                    });
+    sum_over_bodies(
+        exec, "vsb::stiffness_block", workspace, block,
+        [&](const LinearElastic<Real>& material, int first, int last) {
+          return kernel::StiffnessBlock<Basis, Dim, Real, Device>{particles_, basis_, material, first, last};
+        });
     fold_ghost_nodes(exec, basis_, block, Dim * Dim);
   }
 

@@ -28,8 +28,8 @@ struct UpdateStress {
   Basis basis;
   Material material;
   Volume volume;
-  Real dt;               ///< s
-  int state_offset;  ///< of Body
+  Real dt;                                              ///< s
+  int state_offset;                                     ///< of Body
   typename MeanDivergence<Real, Device>::Numbers mean;  ///< [particle]: thetabar, where beta is not 0
   Real beta;
 

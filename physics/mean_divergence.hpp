@@ -31,8 +31,7 @@ auto averaged_share(const Material& material) {
   const auto elastic = material.small_strain_law();
   using Real = decltype(elastic.lambda);
   if (Material::plastic) return Real(1);
-  const Real share =
-      elastic.lambda / (elastic.lambda + 2 * elastic.shear_modulus / static_cast<Real>(Dim));
+  const Real share = elastic.lambda / (elastic.lambda + 2 * elastic.shear_modulus / static_cast<Real>(Dim));
   return share > Real(0) ? share : Real(0);
 }
 

@@ -5,20 +5,29 @@
 
 namespace vsb::app {
 
-bool may_lock(const Scene& scene) {
-  return scene.dimension > 1 &&
-         std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const BodySpec& body) {
-           return body.material.poisson_ratio >= locking_poisson_ratio;
-         });
+namespace {
+
+/// Where nothing can be averaged.
+std::string refusal(const Scene& scene) {
+  if (scene.dimension == 1) return "\"averaged\" is for dimension 2 and 3: in 1D nothing locks";
+  if (scene.method.basis == BasisKind::ugimp)
+    return "\"averaged\" is for basis = \"linear\" and \"quadratic_bspline\"";
+  return "";
+}
+
+}  // namespace
+
+bool may_lock(const BodySpec& body) {
+  return body.material.poisson_ratio >= locking_poisson_ratio;
 }
 
 void read_volumetric(TableReader& method, Scene& scene) {
-  const std::string preset = "full";
-  scene.method.averaged = method.choice("volumetric", {"full", "averaged"}, preset) == "averaged";
-  if (scene.method.averaged && scene.dimension == 1)
-    method.fail(*method.source().get("volumetric"), "volumetric",
-                "\"averaged\" is for dimension 2 and 3: in 1D nothing locks, volume being all there is to "
-                "strain");
+  const auto reason = refusal(scene);
+  const bool preset = reason.empty() && std::any_of(scene.bodies.begin(), scene.bodies.end(), may_lock);
+  scene.method.averaged =
+      method.choice("volumetric", {"full", "averaged"}, preset ? "averaged" : "full") == "averaged";
+  if (scene.method.averaged && !reason.empty())
+    method.fail(*method.source().get("volumetric"), "volumetric", reason);
 }
 
 }  // namespace vsb::app

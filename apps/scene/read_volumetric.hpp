@@ -8,13 +8,13 @@
 
 namespace vsb::app {
 
-/// The Poisson ratio from which on bodies lock that strain by their own divergence: errors of the stress
-/// there are several times those at 0.2.
+/// The Poisson ratio from which on particles that strain by their own divergence lock: the error of the
+/// stress is twice that at 0.2 there, and grows without end.
 constexpr double locking_poisson_ratio = 0.4;
 
-/// Whether one of the bodies has such a Poisson ratio.
-bool may_lock(const Scene& scene);
+bool may_lock(const BodySpec& body);
 
+/// A scene that does not say averages where one of its bodies may lock.
 void read_volumetric(TableReader& method, Scene& scene);
 
 }  // namespace vsb::app

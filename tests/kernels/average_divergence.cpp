@@ -191,9 +191,8 @@ TEST_CASE("the mean divergence of a half beside a wall is that of the whole") {
   };
   const auto half_basis = basis_on(0, 4, true), whole_basis = basis_on(-4, 8, false);
   const UniformGrid<2, double> half_grid({{0., 0.}}, {{1., 1.}}, {{4, 4}});
-  const auto half = fill_cells<2, double>(half_grid, 2, 1., [](const auto& cell) {
-    return cell[0] < 3 && cell[1] > 0 && cell[1] < 3;
-  });
+  const auto half = fill_cells<2, double>(
+      half_grid, 2, 1., [](const auto& cell) { return cell[0] < 3 && cell[1] > 0 && cell[1] < 3; });
   const int n = half.particles.count();
   const auto whole = allocate_particles<2, double, Device>(2 * n);
   const auto from = read(half);

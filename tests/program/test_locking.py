@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Near incompressibility: errors with the mean divergence are those at a Poisson ratio of 0.2, and who gets it."""
+import unittest
+
+from vsb_program import SCENES, ProgramTest, vsb
+
+RATIO = "body[0].material.poisson_ratio={}"
+ACCURATE = ('setting="accurate"', 'method.basis="quadratic_bspline"', 'body[0].boundary="cut2x2"',
+            "body[0].particles_per_cell=2")
+
+
+def given(*pairs):
+    return [argument for pair in pairs for argument in ("--set", pair)]
+
+
+class Locking(ProgramTest):
+    def errors(self, scene, ratio, *pairs):
+        return self.run_scene(scene, "--static", *given(RATIO.format(ratio), *pairs))["errors"]
+
+    def test_cylinder(self):
+        """Its mean stress is the same everywhere, so that any mean will do."""
+        for scene, e_rr, e_tt in (("cylinder", 0.018, 0.021), ("cylinder-accurate", 0.0025, 0.0033)):
+            errors = self.errors(scene, 0.499)
+            self.assertLess(errors["e_rr"], e_rr)
+            self.assertLess(errors["e_tt"], e_tt)
+
+    def test_ellipse(self):
+        """Its mean stress varies: means over whole cells would be many times too inaccurate for B-splines."""
+        plate = ("grid.spacing=1.0", "traction[1].exact_ellipse.far_ratio=2.0", "compare.far_ratio=2.0")
+        for setting in ((), ACCURATE):
+            soft, stiff = (self.errors("ellipse-exact", ratio, *plate, *setting) for ratio in (0.2, 0.499))
+            for name, error in stiff.items():
+                self.assertLess(error, 1.5 * soft[name], (name, setting))
+
+    def test_steps_go_where_the_static_solution_is(self):
+        few = given(RATIO.format(0.49), "grid.spacing=0.5", "body[0].particles_per_cell=2", "method.damping=0.4",
+                    "time.kappa=0.8")
+        for scene, digits in (("cylinder", 3e-3), ("cylinder-accurate", 2e-2)):
+            steps, static = self.run_scene(scene, *few), self.run_scene(scene, "--static", *few, out="static")
+            for name in ("e_rr", "e_tt"):
+                self.assertAlmostEqual(steps["errors"][name], static["errors"][name], delta=digits * static["errors"][name])
+
+    def said(self, *pairs):
+        done = vsb("check", SCENES / "cylinder.toml", *given("grid.spacing=0.5", *pairs))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def test_who_averages(self):
+        for ratio, choice in ((0.39, "full"), (0.4, "averaged")):
+            done = self.said(RATIO.format(ratio))
+            self.assertIn(f"volumetric = '{choice}'", done.stdout)
+            self.assertNotIn("lock", done.stderr)
+        self.assertIn("body 'ring' has poisson_ratio = 0.45 and method.volumetric = \"full\"",
+                      self.said(RATIO.format(0.45), 'method.volumetric="full"').stderr)
+        self.assertNotIn("lock", self.said('method.volumetric="full"').stderr)
+        ugimp = self.said(RATIO.format(0.45), 'method.basis="ugimp"')
+        self.assertIn("volumetric = 'full'", ugimp.stdout)
+        self.assertIn("lock", ugimp.stderr)
+
+    def test_where_nothing_is_averaged(self):
+        for scene, pairs, why in (("column", (), "in 1D nothing locks"),
+                                  ("cylinder", ('method.basis="ugimp"',), "is for basis =")):
+            done = vsb("run", SCENES / f"{scene}.toml", "--out", self.folder / "refused",
+                       *given('method.volumetric="averaged"', *pairs))
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("method.volumetric", done.stderr)
+            self.assertIn(why, done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
