@@ -66,6 +66,12 @@ LoadedLanes<Dim, Real, Device> loaded_lanes(const LaneState<Dim, Real, Device>& 
   return {s.memory.lanes, s.memory.grid, s.boundary.tractions};
 }
 
+/// beta of a step, 0 where particles strain by their own divergence.
+template <int Dim, class Material, class Real>
+Real lane_share(const Material& material, const StepOptions<Dim, Real>& options) {
+  return options.volumetric == Volumetric::averaged ? averaged_share<Dim>(material) : Real(0);
+}
+
 template <class Exec>
 using OverLayers = Kokkos::RangePolicy<Exec, Kokkos::Schedule<Kokkos::Dynamic>>;
 
@@ -329,7 +335,8 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
         "vsb::move_lanes", detail::over_layers(exec, s),
         kernel::MoveLanes<decltype(cubic)::value, Field, Material, Volume, Dim, Real, Device>{
             detail::loaded_lanes(s),
-            {m.lanes, m.nodes, m.grid, material, volume, m.leavers},
+            {m.lanes, m.nodes, m.grid, material, volume, m.leavers,
+             detail::lane_share<Dim>(material, options)},
             swept,
             and_sum});
   });

@@ -18,6 +18,7 @@
 #include <vsb/kernels/lane_plasticity.hpp>
 #include <vsb/kernels/lane_tractions.hpp>
 #include <vsb/physics/kinematics.hpp>
+#include <vsb/physics/mean_divergence.hpp>
 #include <vsb/physics/next_cell.hpp>
 
 namespace vsb {
@@ -135,9 +136,11 @@ struct MoveGroup {
   Material material;
   Volume volume;
   Leavers<Dim, Real, Device> leavers;
+  Real beta = 0;  ///< share of the divergence that gives way to a mean (physics/mean_divergence.hpp)
 
   [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void operator()(const LaneGroup<Dim>& group,
                                                                   int layer) const {
+    const P mean = beta > Real(0) ? mean_divergence(group) : P(Real(0));
     Vector<(1 << Dim), P> dx[Dim];
     CellPolynomial<Dim, P> u[Dim];
     static_for<Dim>([&](auto i) VSB_UNROLLED {
@@ -153,6 +156,7 @@ struct MoveGroup {
           if constexpr (!Cubic) L(i, j) *= P(grid.inverse_spacing[j] * grid.spacing[0]);
         });
       });
+      if (beta > Real(0)) L = with_mean_divergence(L, mean, P(beta));
       advance(entry, L);
       const P V = lanes.load(lanes.volume_column, entry);
       lanes.store(lanes.volume_column, entry, volume(V, L, P(1)));
@@ -171,6 +175,26 @@ struct MoveGroup {
       if constexpr (i > 0) inside = inside & (xi[i] >= lowest) & (xi[i] < P(1));
     });
     return !any(!inside);
+  }
+
+  /// The mean of dt tr L over every cell, its particles weighted by their volumes.
+  [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION P mean_divergence(const LaneGroup<Dim>& group) const {
+    CellPolynomial<Dim, P> theta;
+    lane_sums::set_zero<Dim>(theta);
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
+      CellPolynomial<Dim, P> u;
+      coefficients_of(nodes, nodes.remapped_column + i, group, u);
+      static_for<(1 << Dim)>([&](auto k) VSB_UNROLLED {
+        if constexpr (k >> i & 1) theta[k ^ (1 << i)] += P(grid.inverse_spacing[i] * grid.spacing[0]) * u[k];
+      });
+    });
+    P V_sum(Real(0)), V_theta(Real(0));
+    for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
+      const P V = lanes.load(lanes.volume_column, entry);
+      V_sum += V;
+      V_theta += V * value_at<Dim>(theta, lanes.load_xi(entry));
+    }
+    return math::select(V_sum > P(Real(0)), V_theta / V_sum, P(Real(0)));
   }
 
   KOKKOS_FORCEINLINE_FUNCTION void advance(size_t entry, const Matrix<Dim, P>& L) const {

@@ -33,6 +33,7 @@ struct SplineLaneState : LaneState<Dim, Real, Device> {
   LaneGhosts<Device> ghosts;
   LaneCorners<Device> corners;
   Kokkos::View<int*, Device> crossed;  ///< [layer]: 1 where particles changed the cell of the scene's grid
+  Kokkos::View<int*, Device> small_means;  ///< memory of average_lane_divergence
 };
 
 /// The grid of the scene; before packing.
@@ -173,13 +174,16 @@ int lane_step(const Exec& exec, SplineLaneState<Dim, Real, Device>& s, const Mat
       "vsb::remap_lane_nodes", over_chunks,
       kernel::RemapLaneNodes<Dim, Real, Device, 3>{{m.nodes}, options.dt * m.grid.inverse_spacing[0]});
   mirror(m.nodes.remapped_column, 1);
+  const Real beta = detail::lane_share<Dim>(material, options);
+  if (beta > Real(0)) average_lane_divergence(exec, s, s.grid, s.small_means);
   const bool summed = s.steps_of_flow < 2;
-  Kokkos::parallel_for("vsb::move_spline_lanes", detail::over_layers(exec, s),
-                       kernel::MoveSplineLanes<Field, Material, Volume, Dim, Real, Device>{
-                           detail::loaded_lanes(s),
-                           {{m.lanes, m.nodes, m.grid, material, volume, m.leavers}, s.crossed},
-                           next_virtual_stress,
-                           summed});
+  Kokkos::parallel_for(
+      "vsb::move_spline_lanes", detail::over_layers(exec, s),
+      kernel::MoveSplineLanes<Field, Material, Volume, Dim, Real, Device>{
+          detail::loaded_lanes(s),
+          {{m.lanes, m.nodes, m.grid, material, volume, m.leavers, beta}, s.crossed, m.walls},
+          next_virtual_stress,
+          summed});
   return detail::note_settled(s, detail::settle_leavers(exec, s, next_virtual_stress, summed));
 }
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <vsb/kernels/lane_sweeps.hpp>
+#include <vsb/kernels/spline_lane_means.hpp>
 #include <vsb/kernels/spline_lane_tractions.hpp>
 
 namespace vsb {
@@ -72,12 +73,14 @@ struct AccelerateSplineLanes {
 template <class Material, class Volume, int Dim, class Real, class Device>
 struct MoveSplineGroup : MoveGroup<false, Material, Volume, Dim, Real, Device> {
   using Base = MoveGroup<false, Material, Volume, Dim, Real, Device>;
+  using Base::beta;
   using Base::grid;
   using Base::lanes;
   using Base::nodes;
   using Base::volume;
   using typename Base::P;
   Kokkos::View<int*, Device> crossed;  ///< [layer]: 1 where a particle went from corner to corner
+  Walls<Dim> walls;
 
   /// Where in its cell a particle may be: beyond the middle of the outermost dual cells the grid ends.
   struct Room {
@@ -116,6 +119,9 @@ struct MoveSplineGroup : MoveGroup<false, Material, Volume, Dim, Real, Device> {
       coefficients_of(nodes, nodes.remapped_column + i, stencil, u[i]);
     });
     const Room room = room_of(group);
+    const auto centres = centre_room_of(lanes, group, grid, walls);
+    CellPolynomial<Dim, P> mean;
+    if (beta > Real(0)) means_around(stencil, mean);
     for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
       const Powers<Dim, P> xi(lanes.load_xi(entry));
       Matrix<Dim, P> L;  // dt L
@@ -125,6 +131,7 @@ struct MoveSplineGroup : MoveGroup<false, Material, Volume, Dim, Real, Device> {
           L(i, j) = gradient[j] * P(grid.inverse_spacing[j] * grid.spacing[0]);
         });
       });
+      if (beta > Real(0)) L = with_mean_divergence(L, value_at<Dim>(mean, centres.place(xi.first)), P(beta));
       this->advance(entry, L);
       const P V = lanes.load(lanes.volume_column, entry);
       lanes.store(lanes.volume_column, entry, volume(V, L, P(1)));
@@ -134,6 +141,14 @@ struct MoveSplineGroup : MoveGroup<false, Material, Volume, Dim, Real, Device> {
       note_crossing(layer, entry, xi.first, moved);
       if (!room.holds(moved)) this->leave(group, layer, entry);
     }
+  }
+  /// The coefficients of the mean divergence between the centres.
+  KOKKOS_FORCEINLINE_FUNCTION void means_around(const LaneStencil<Dim>& stencil,
+                                                CellPolynomial<Dim, P>& mean) const {
+    static_for<mean.size>([&](auto a) VSB_UNROLLED {
+      mean[a] = nodes.load(nodes.increment_column, stencil.node[centre_row(a >> 1)] + (a & 1));
+    });
+    coefficients_from_nodes<Dim>(mean);
   }
   KOKKOS_FORCEINLINE_FUNCTION void note_crossing(int layer, size_t entry, const Vector<Dim, P>& before,
                                                  const Vector<Dim, P>& after) const {

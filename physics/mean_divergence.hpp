@@ -38,7 +38,7 @@ auto averaged_share(const Material& material) {
 /// L with the share `beta` of its divergence replaced by that of `mean`.
 template <int Dim, class T>
 KOKKOS_FORCEINLINE_FUNCTION Matrix<Dim, T> with_mean_divergence(Matrix<Dim, T> L, T mean, T beta) {
-  const T correction = beta * T(1.0 / Dim) * (mean - trace(L));
+  const T share = beta / T(Dim), correction = share * T(mean - trace(L));
   for (int i = 0; i < Dim; ++i) L(i, i) += correction;
   return L;
 }
