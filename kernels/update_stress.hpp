@@ -28,10 +28,10 @@ struct UpdateStress {
   Basis basis;
   Material material;
   Volume volume;
-  Real dt;                                              ///< s
-  int state_offset;                                     ///< of Body
-  typename MeanDivergence<Real, Device>::Numbers mean;  ///< [particle]: thetabar, where beta is not 0
-  Real beta;
+  Real dt;                                                   ///< s
+  int state_offset = 0;                                      ///< of Body
+  typename MeanDivergence<Real, Device>::Numbers mean = {};  ///< [particle]: thetabar, where beta is not 0
+  Real beta = 0;
 
   KOKKOS_FUNCTION void operator()(int p) const {
     const auto x = particles.position_of(p);
