@@ -9,6 +9,8 @@
 ///   C and A of the next step in one, while the particles are at hand.
 ///
 /// The nodes bring dt a, dt v in cells and dt v* in cells, so that only sums are left for the particles.
+/// Against volumetric locking the divergence of L gives way to its mean over the cell
+/// (physics/mean_divergence.hpp), for which C looks at the volumes first.
 ///
 /// With many particles in a cell B does without them. p*_I = p_I + dt sum_J M_IJ a_J, and the consistent mass
 /// matrix M_IJ = sum_p m_p N_Ip N_Jp is summed up by A, cell by cell (physics/cell_mass_matrix.hpp):

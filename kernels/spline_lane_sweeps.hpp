@@ -2,7 +2,8 @@
 /// \file
 /// The sweeps over dual cell lanes of one MUSL step with quadratic B-splines, a layer each call: A, B, C, and
 /// C with A of the next step, as in kernels/lane_sweeps.hpp. Which corner of its dual cell a particle is in
-/// says which cell of the scene's grid it is in: C notes where that changes, for Algorithm 1.
+/// says which cell of the scene's grid it is in: C notes where that changes, for Algorithm 1. The mean
+/// divergence, if asked for, takes a sweep of its own before C (kernels/spline_lane_means.hpp).
 #pragma once
 
 #include <vsb/kernels/lane_sweeps.hpp>
