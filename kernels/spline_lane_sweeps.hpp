@@ -122,6 +122,7 @@ struct MoveSplineGroup : MoveGroup<false, Material, Volume, Dim, Real, Device> {
     const Room room = room_of(group);
     const auto centres = centre_room_of(lanes, group, grid, walls);
     CellPolynomial<Dim, P> mean;
+    lane_sums::set_zero<Dim>(mean);
     if (beta > Real(0)) means_around(stencil, mean);
     for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
       const Powers<Dim, P> xi(lanes.load_xi(entry));
