@@ -54,7 +54,8 @@ int main(int argc, char** argv) {
       "Exit codes: 0 done, 2 bad usage or input, 3 diverged, 4 files cannot be read or written,\n"
       "5 interrupted, checkpoint written, 6 a study ran but missed an expectation, 7 not static after "
       "max_steps\n"
-      "(of until_static) or max_iterations (of static)."};
+      "(of until_static) or max_iterations (of static), 8 a healthy body left the grid: its last state is a "
+      "frame."};
   app.require_subcommand(1);
   app.failure_message(CLI::FailureMessage::help);
 
@@ -151,6 +152,9 @@ int main(int argc, char** argv) {
   } catch (const Diverged& error) {
     fmt::print(stderr, "vsb: diverged {}\n", error.what());
     return exit_diverged;
+  } catch (const LeftGrid& error) {
+    fmt::print(stderr, "vsb: {}\n", error.what());
+    return exit_left_grid;
   } catch (const NotStatic& error) {
     fmt::print(stderr, "vsb: {}\n", error.what());
     return exit_not_static;

@@ -9,12 +9,13 @@ namespace vsb {
 
 namespace kernel {
 
-/// One list: the particles without a place, as far as a report of a lost one needs them.
+/// One list: the particles without a place.
 template <int Dim, class Real, class Device>
 struct UnpackHomeless {
   Leavers<Dim, Real, Device> leavers;
   Particles<Dim, Real, Device> particles;
   UniformGrid<Dim, Real> grid;
+  int state_size;  ///< numbers of material state
   KOKKOS_FUNCTION void operator()(int k) const {
     using Columns = CellLanes<Dim, Real, Device>;
     leavers.for_each_homeless(k, [&](int n, int l) {
@@ -28,9 +29,12 @@ struct UnpackHomeless {
         particles.position(id, i) = x[i];
         particles.velocity(id, i) = number(Columns::velocity_column + i);
       }
+      particles.mass(id) = number(Columns::mass_column);
       particles.volume(id) = number(Columns::volume_column);
       for (int c = 0; c < particles.stress_size; ++c)
         particles.cauchy_stress(id, c) = number(Columns::stress_column + c);
+      for (int c = 0; c < state_size; ++c)
+        particles.material_state(id, c) = number(Columns::state_column + c);
     });
   }
 };
@@ -221,8 +225,9 @@ struct TakeIds {
 template <class Exec, int Dim, class Real, class Device>
 void unpack_homeless(const Exec& exec, const LaneMemory<Dim, Real, Device>& m,
                      const Particles<Dim, Real, Device>& particles) {
-  Kokkos::parallel_for("vsb::unpack_homeless", Kokkos::RangePolicy<Exec>(exec, 0, m.lanes.layers()),
-                       kernel::UnpackHomeless<Dim, Real, Device>{m.leavers, particles, m.grid});
+  Kokkos::parallel_for(
+      "vsb::unpack_homeless", Kokkos::RangePolicy<Exec>(exec, 0, m.lanes.layers()),
+      kernel::UnpackHomeless<Dim, Real, Device>{m.leavers, particles, m.grid, m.lanes.state_size});
 }
 
 /// Packs all particles anew, the leavers without a place among them. reach_out: with groups where these went.

@@ -77,13 +77,14 @@ void Checkpoints::write(const SavedState& saved, Simulation& simulation) {
   IntoRows into(particles);
   simulation.save_particles(into);
   particles.finish();
-  if (scene_.removal) {
+  if (may_lose_particles(scene_)) {
     const auto& staged = saved.staged;
     file.group("staged");
+    file.attribute("staged", "outflow", staged.outflow);
     file.attribute("staged", "loads_begin", std::vector<std::int64_t>{staged.loads_begin});
     file.dataset("staged/present", staged.present, {staged.present.size()});
     const std::vector<unsigned char> stages(staged.stages.begin(), staged.stages.end());
-    file.dataset("staged/stages", stages, {stages.size()});
+    if (!stages.empty()) file.dataset("staged/stages", stages, {stages.size()});
   }
   write_provenance(file, scene_);
   const std::string temporary = file.finish();
@@ -134,8 +135,9 @@ SavedState Checkpoints::read(const std::string& path) const {
   SavedState saved{number(file, path, "checkpoint", "step"),
                    static_cast<size_t>(number(file, path, "checkpoint", "bytes_per_number")),
                    {}};
-  if (scene_.removal) {
-    const auto stages = file.bytes("staged/stages");
+  if (may_lose_particles(scene_)) {
+    const auto stages = scene_.removal ? file.bytes("staged/stages") : std::vector<unsigned char>();
+    saved.staged.outflow = file.integers("staged", "outflow");
     saved.staged.present = file.bytes("staged/present");
     saved.staged.stages.assign(stages.begin(), stages.end());
     saved.staged.loads_begin = number(file, path, "staged", "loads_begin");

@@ -54,12 +54,6 @@ void write_mesh(Hdf5Writer& file, const Mesh& mesh, double time, const Points& p
   write_each<unsigned char>(file, "VTKHDF/Types", mesh.cells, [&](size_t) { return mesh.cell_type; });
 }
 
-std::vector<double> displacement(const Snapshot& s) {
-  std::vector<double> u(s.position);
-  for (size_t i = 0; i < u.size(); ++i) u[i] -= s.initial_position[i];
-  return u;
-}
-
 std::vector<double> equivalent_plastic_strain(const Snapshot& s) {
   std::vector<double> measure(s.count());
   for (size_t p = 0; p < s.count(); ++p) {
@@ -107,7 +101,8 @@ void write_particle_frame(const std::string& path, const Scene& scene, const Par
     write(
         "id", std::int64_t(), 1, 0, [](const Snapshot& s) -> const auto& { return s.id; });
   if (wanted("displacement"))
-    write("displacement", double(), 3, field::position | field::initial_position, displacement);
+    write("displacement", double(), 3, field::position | field::initial_position,
+          [](const Snapshot& s) -> const Doubles& { return s.displacement; });
   write_field("velocity", 3, field::velocity, &Snapshot::velocity);
   write_field("cauchy_stress", 6, field::cauchy_stress, &Snapshot::cauchy_stress);
   if (!particles.recovered_stress.empty())

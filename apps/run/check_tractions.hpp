@@ -39,8 +39,9 @@ void check_tractions(const Scene& scene, const Basis& basis, const Occupancy<Dev
         "the traction's 'surface'",
         scene.tractions[k].name));
   }
+  const Point origin = local_origin(scene);
   for (size_t p = 0; p < placed.position.size(); ++p) {
-    const auto shape = basis.shape(to_vector<Dim, Real>(placed.position[p]));
+    const auto shape = basis.shape(to_local<Vector<Dim, Real>>(placed.position[p], origin));
     const TractionMask own = carried.empty() ? 0 : carried[p];
     for (int a = 0; a < Basis::support; ++a) {
       const auto ijk = basis.grid.node_ijk(shape.node[a]);
@@ -61,7 +62,7 @@ void check_tractions(const Scene& scene, const Basis& basis, const Occupancy<Dev
 
 /// Throws SetupError for a load of a static solution that nothing takes up.
 template <int Dim>
-void refuse_unsupported(const UnsupportedLoad<Dim>& load) {
+void refuse_unsupported(const Scene& scene, const UnsupportedLoad<Dim>& load) {
   if (!load.found) return;
   const auto list = [](const auto& vector) {
     std::string text;
@@ -69,11 +70,11 @@ void refuse_unsupported(const UnsupportedLoad<Dim>& load) {
     return text;
   };
   throw SetupError(fmt::format(
-      "--static: no support takes up a force of ({}) N{} on the body around ({}) m, {:.2g} of its nodal "
+      "--static: no support takes up a force of ({}) N{} on the body around {}, {:.2g} of its nodal "
       "forces, so there is no static state: hold the body at a face of the grid ('faces'), or balance its "
       "loads",
       list(load.force), Dim > 1 ? fmt::format(" and a torque of ({}) N m", list(load.torque)) : "",
-      list(load.middle), load.share));
+      place_text(scene, to_scene(load.middle, local_origin(scene)), 4), load.share));
 }
 
 }  // namespace vsb::app

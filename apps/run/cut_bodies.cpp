@@ -9,6 +9,7 @@
 
 #include "run/cut_lattice.hpp"
 #include "run/lattice_points.hpp"
+#include "run/local_origin.hpp"
 #include "run/simulation.hpp"
 #include "scene/units.hpp"
 
@@ -68,11 +69,11 @@ bool endless(const Scene& scene, const BodySpec& body, Point q, const Face& face
 
 [[noreturn]] void throw_cut_off(const Scene& scene, const BodySpec& body, const Face& face, const Point& x) {
   throw SetupError(fmt::format(
-      "body '{}' reaches out of the grid at the open face {}_{}, to ({:.6g}, {:.6g}, {:.6g}), and would "
+      "body '{}' reaches out of the grid at the open face {}_{}, to {}, and would "
       "be cut off "
       "there: make the grid larger or the body smaller, or, for a symmetry plane or a support, give the "
       "face a condition",
-      body.name, scene.grid.axis_name(face.axis), face.side == 0 ? "min" : "max", x[0], x[1], x[2]));
+      body.name, scene.grid.axis_name(face.axis), face.side == 0 ? "min" : "max", place_text(scene, x)));
 }
 
 /// Of a cut lattice every share beyond an open face counts, also that of a box with its centre in the grid.

@@ -62,13 +62,6 @@ SpuriousTraction largest_spurious(const Scene& scene, const PlacedParticles& pla
   return worst;
 }
 
-std::string text(const Point& p, int dimension) {
-  std::string s = "(";
-  for (size_t i = 0; i < static_cast<size_t>(dimension); ++i)
-    s += fmt::format("{}{:.4g}", i == 0 ? "" : ", ", p[i]);
-  return s + ") m";
-}
-
 }  // namespace
 
 SpuriousTraction spurious_traction(const Scene& scene, const PlacedParticles& placed) {
@@ -140,7 +133,7 @@ std::vector<std::string> field_advice(const Scene& scene, const PlacedParticles&
       advice.push_back(fmt::format(
           "traction '{}': its stress jumps inside the material by {:.3g} Pa at {}, which acts as a traction "
           "there: let it change over several particles, or move the change out of the material",
-          traction.name, spurious.size, text(spurious.position, scene.dimension)));
+          traction.name, spurious.size, place_text(scene, spurious.position, 4)));
     break;
   }
   if (const auto wall = thin_wall(scene, grid); wall.cells > 0)
@@ -148,7 +141,7 @@ std::vector<std::string> field_advice(const Scene& scene, const PlacedParticles&
         "the wall at {} is {} cell{} thick between faces with different tractions, whose boundary nodes meet "
         "inside it; about {} are needed: refine the grid, or use a blend (radial_blend, planar_blend) with "
         "nodes = \"all\"",
-        text(wall.position, scene.dimension), wall.cells, wall.cells == 1 ? "" : "s", ThinWall::enough));
+        place_text(scene, wall.position, 4), wall.cells, wall.cells == 1 ? "" : "s", ThinWall::enough));
   return advice;
 }
 

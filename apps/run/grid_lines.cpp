@@ -3,21 +3,28 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "run/simulation.hpp"
 
 namespace vsb::app {
 
 ParticlesOnGridLines find_on_grid_lines(const Scene& scene, const PlacedParticles& placed) {
-  constexpr double tolerance = 1e-9;  // cells: above the round-off of a position, below any distance meant
   const auto& grid = scene.grid;
+  // In cells: above the round-off of a position, below any distance meant.
+  std::array<double, 3> tolerance{};
+  const auto box = bounding_box(grid, scene.dimension);
+  for (size_t i = 0; i < static_cast<size_t>(scene.dimension); ++i)
+    tolerance[i] = 1e-9 + 4 * std::numeric_limits<double>::epsilon() *
+                              std::max(std::abs(box.lower[i]), std::abs(box.upper[i])) / grid.spacing[i];
   ParticlesOnGridLines found{0, {}};
   for (const Point& x : placed.position) {
     bool on_line = false;
     for (size_t i = 0; i < static_cast<size_t>(scene.dimension); ++i) {
       const double in_cells = (x[i] - grid.lower[i]) / grid.spacing[i], line = std::round(in_cells);
-      if (line > 0 && line < grid.cells[i] && std::abs(in_cells - line) <= tolerance) on_line = true;
+      if (line > 0 && line < grid.cells[i] && std::abs(in_cells - line) <= tolerance[i]) on_line = true;
     }
     if (on_line && found.count++ == 0) found.first = x;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The multilinear basis of a scene's grid for work on the host, such as on a snapshot.
+/// The multilinear basis of a scene's grid for work on the host, such as on a snapshot, whose places are
+/// those of the scene.
 #pragma once
 
 #include "run/basis_of.hpp"
@@ -15,9 +16,9 @@ void with_host_basis(const Scene& scene, const Work& work) {
   const auto in_dimension = [&](auto dimension) {
     constexpr int Dim = decltype(dimension)::value;
     if (scene.grid.mapped())
-      work(OwnedBasis<MappedLinearBasis<Dim, double>, Host>(scene).basis);
+      work(OwnedBasis<MappedLinearBasis<Dim, double>, Host>(scene, Point{}).basis);
     else
-      work(OwnedBasis<LinearBasis<Dim, double>, Host>(scene).basis);
+      work(OwnedBasis<LinearBasis<Dim, double>, Host>(scene, Point{}).basis);
   };
   switch (scene.dimension) {
     case 1:

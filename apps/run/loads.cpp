@@ -137,10 +137,10 @@ std::vector<LoadedPoint> loaded_points(const Scene& scene, const PlacedParticles
         const int p = nearest(piece.position);
         if (p < 0)
           throw SetupError(
-              fmt::format("traction '{}' has no material point within {:.6g} m of ({:.6g}, {:.6g}, {:.6g}) "
+              fmt::format("traction '{}' has no material point within {:.6g} m of {} "
                           "on its surface: "
                           "check its 'layer'",
-                          traction.name, reach, piece.position[0], piece.position[1], piece.position[2]));
+                          traction.name, reach, place_text(scene, piece.position)));
         for (size_t i = 0; i < 3; ++i) area[p][i] += piece.area[i];
       });
       for (const auto& [p, sum] : area)
@@ -156,13 +156,14 @@ Stress6 full_stress(const Scene& scene, const TractionSpec& traction, const Poin
                                 : stress_at<3>(scene, traction, x);
 }
 
-std::vector<Resultant> exact_resultants(const Scene& scene) {
+std::vector<Resultant> exact_resultants(const Scene& scene, const Point& about) {
   std::vector<Resultant> resultants(scene.tractions.size());
   for (size_t k = 0; k < scene.tractions.size(); ++k) {
     auto& r = resultants[k];
     for_each_piece(scene, k, [&](const SurfacePiece& piece) {
       const auto f = force_on(full_stress(scene, scene.tractions[k], piece.position), piece.area);
-      const auto& x = piece.position;
+      Point x = piece.position;
+      for (size_t i = 0; i < 3; ++i) x[i] -= about[i];
       for (size_t i = 0; i < 3; ++i) {
         const size_t j = (i + 1) % 3, l = (i + 2) % 3;
         r.force[i] += f[i];

@@ -12,6 +12,7 @@
 #include <vsb/kernels/self_balance.hpp>
 #include <vsb/kernels/step.hpp>
 #include "run/body_surface.hpp"
+#include "run/local_origin.hpp"
 #include "run/place_particles.hpp"
 #include "run/simulation.hpp"
 
@@ -40,12 +41,12 @@ std::vector<LoadedPoint> loaded_points(const Scene& scene, const PlacedParticles
 template <int Dim, class Grid>
 std::vector<LoadedPoint> conforming_points(const Scene& scene, const Grid& grid,
                                            const std::vector<bool>& occupied);
-/// Force and torque about the origin of each traction at full load on the initial surface.
+/// Force, and torque about a point, of each traction at full load on the initial surface.
 struct Resultant {
   Point force{}, torque{};
   double load = 0;  ///< integral of |sbar n|, which a closed surface does not cancel: p A of a pressure
 };
-std::vector<Resultant> exact_resultants(const Scene& scene);
+std::vector<Resultant> exact_resultants(const Scene& scene, const Point& about);
 /// sbar of a traction at full load.
 Stress6 full_stress(const Scene& scene, const TractionSpec& traction, const Point& x);
 /// The field of a traction at full load as the kernels take it; `scene` says of what its bodies are.
@@ -56,7 +57,8 @@ StressField<Dim, Real> stress_field(const Scene& scene, const StressFieldSpec& s
 template <int Dim, class Real>
 class Loads {
  public:
-  explicit Loads(const Scene& scene)
+  /// Places are counted from `origin`.
+  Loads(const Scene& scene, const Point& origin)
       : on_nodes_(imposed_by(scene, Imposition::virtual_stress) |
                   imposed_by(scene, Imposition::virtual_stress_original)),
         original_(imposed_by(scene, Imposition::virtual_stress_original)),
@@ -65,7 +67,7 @@ class Loads {
     for (size_t k = 0; k < scene.tractions.size(); ++k) {
       const auto& traction = scene.tractions[k];
       if (!std::holds_alternative<Stress6>(traction.field)) {
-        fields_.field[k] = stress_field<Dim, Real>(scene, traction.field);
+        fields_.field[k] = stress_field<Dim, Real>(scene, seen_from(origin, traction.field));
         all_uniform_ = false;
         all_affine_ = all_affine_ && fields_.field[k].is_affine();
       }
@@ -238,11 +240,9 @@ std::vector<LoadedPoint> conforming_points(const Scene& scene, const Grid& grid,
     }
     return static_cast<bool>(occupied[static_cast<size_t>(index)]);
   };
+  const Point origin = local_origin(scene);
   const auto place = [&](const Vector<Dim, int>& ijk) {
-    const auto x = grid.node_position(grid.node_index(ijk));
-    Point p{};
-    for (int i = 0; i < Dim; ++i) p[static_cast<size_t>(i)] = x[i];
-    return p;
+    return to_scene(grid.node_position(grid.node_index(ijk)), origin);
   };
   constexpr int corners = 1 << (Dim - 1);
   for (size_t index = 0; index < occupied.size(); ++index) {

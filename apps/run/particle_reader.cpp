@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "run/local_origin.hpp"
+
 namespace vsb::app {
 
 namespace {
@@ -18,9 +20,9 @@ void append(std::vector<T>& to, const std::vector<T>& more) {
 
 void append(Snapshot& to, const Snapshot& more) {
   append(to.id, more.id);
-  for (const auto of :
-       {&Snapshot::initial_position, &Snapshot::position, &Snapshot::velocity, &Snapshot::cauchy_stress,
-        &Snapshot::volume, &Snapshot::mass, &Snapshot::recovered_stress, &Snapshot::plastic_strain})
+  for (const auto of : {&Snapshot::initial_position, &Snapshot::displacement, &Snapshot::position,
+                        &Snapshot::velocity, &Snapshot::cauchy_stress, &Snapshot::volume, &Snapshot::mass,
+                        &Snapshot::recovered_stress, &Snapshot::plastic_strain})
     append(to.*of, more.*of);
   append(to.in_boundary, more.in_boundary);
 }
@@ -43,14 +45,26 @@ Snapshot ParticleReader::all(unsigned fields) const {
       whole.time = s.time;
       whole.bodies = s.bodies;
       whole.id.reserve(count);
-      for (const auto of :
-           {&Snapshot::initial_position, &Snapshot::position, &Snapshot::velocity, &Snapshot::cauchy_stress,
-            &Snapshot::volume, &Snapshot::mass, &Snapshot::recovered_stress, &Snapshot::plastic_strain})
+      for (const auto of : {&Snapshot::initial_position, &Snapshot::displacement, &Snapshot::position,
+                            &Snapshot::velocity, &Snapshot::cauchy_stress, &Snapshot::volume, &Snapshot::mass,
+                            &Snapshot::recovered_stress, &Snapshot::plastic_strain})
         (whole.*of).reserve((s.*of).size() / s.count() * count);
     }
     append(whole, s);
   });
   return whole;
+}
+
+SceneReader::SceneReader(const Scene& scene, const std::vector<int>& ids, std::vector<PlacedBody> bodies,
+                         std::unique_ptr<FieldSource> source)
+    : scene_(scene),
+      origin_(local_origin(scene)),
+      ids_(ids),
+      bodies_(std::move(bodies)),
+      source_(std::move(source)) {}
+
+void SceneReader::to_scene_places(std::vector<double>& places) const {
+  for (size_t i = 0; i < places.size(); ++i) places[i] += origin_[i % 3];
 }
 
 Snapshot SceneReader::range(unsigned fields, size_t first, size_t size) const {
@@ -67,6 +81,10 @@ Snapshot SceneReader::range(unsigned fields, size_t first, size_t size) const {
     source_->read(field, first, to);
   };
   read(field::position, s.position, 3);
+  if (!s.position.empty())
+    for (const auto& [p, x] : outside)
+      if (const auto n = static_cast<size_t>(p); n >= first && n < first + size)
+        std::copy(x.begin(), x.end(), s.position.begin() + static_cast<std::ptrdiff_t>(3 * (n - first)));
   read(field::velocity, s.velocity, 3);
   read(field::cauchy_stress, s.cauchy_stress, 6);
   read(field::volume, s.volume, 1);
@@ -83,6 +101,7 @@ void SceneReader::visit(unsigned fields, const std::function<void(Snapshot&)>& w
   if ((fields & field::initial_position) == 0) {
     for (size_t first = 0; first < count; first += range_size) {
       auto s = range(fields, first, std::min(range_size, count - first));
+      to_scene_places(s.position);
       work(s);
     }
     return;
@@ -94,7 +113,11 @@ void SceneReader::visit(unsigned fields, const std::function<void(Snapshot&)>& w
     if (start.empty()) return;
     const size_t size = start.size() / 3;
     auto s = range(fields, first, size);
+    s.displacement = s.position;  // the difference of small numbers, before the origin is added
+    for (size_t i = 0; i < s.displacement.size(); ++i) s.displacement[i] -= start[i];
     s.initial_position = std::move(start);
+    to_scene_places(s.initial_position);
+    to_scene_places(s.position);
     work(s);
     start.clear();
     first += size;
@@ -102,8 +125,10 @@ void SceneReader::visit(unsigned fields, const std::function<void(Snapshot&)>& w
   for_each_start(scene_, [&](const Point& x) {
     const size_t next = first + start.size() / 3;
     if (next >= count || number++ != id_of(next)) return;
-    for (const double along : x)  // in the precision in which the particle began
+    for (size_t i = 0; i < 3; ++i) {  // in the precision in which the particle began
+      const double along = x[i] - origin_[i];
       start.push_back(scene_.single_precision ? static_cast<double>(static_cast<float>(along)) : along);
+    }
     if (start.size() == 3 * range_size) pass_on();
   });
   pass_on();

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct Snapshot {
   size_t first = 0;  ///< number of the first particle
   std::vector<std::int64_t> id;
   std::vector<double> initial_position;    ///< m
+  std::vector<double> displacement;        ///< m, where both positions are asked for
   std::vector<double> position, velocity;  ///< m, m/s
   std::vector<double> cauchy_stress;       ///< Pa, tension positive
   std::vector<double> volume, mass;        ///< m^3, kg
@@ -52,6 +54,7 @@ class ParticleReader {
   size_t count = 0;
   bool plastic = false;                  ///< whether there is a plastic strain
   std::vector<double> recovered_stress;  ///< [6 per particle]: whoever recovers it puts it here
+  std::map<int, Point> outside;          ///< where particles are whose source has other positions, as there
 
   /// Calls work(snapshot) for all particles in the order of their numbers, as many at a time as suits.
   void for_each_range(unsigned fields, const Work& work) const;
@@ -68,7 +71,7 @@ class FieldSource {
  public:
   virtual ~FieldSource() = default;
   /// One field but the initial position and the flags, of particles first, first + 1, ...; `to` has the
-  /// right size, and zeros.
+  /// right size, and zeros. Positions are counted from the local origin.
   virtual void read(unsigned field, size_t first, std::vector<double>& to) = 0;
   virtual void read_flags(size_t first, std::vector<unsigned char>& to) = 0;
 };
@@ -78,15 +81,17 @@ class SceneReader final : public ParticleReader {
  public:
   /// `ids`: of those that are left; empty where all are.
   SceneReader(const Scene& scene, const std::vector<int>& ids, std::vector<PlacedBody> bodies,
-              std::unique_ptr<FieldSource> source)
-      : scene_(scene), ids_(ids), bodies_(std::move(bodies)), source_(std::move(source)) {}
+              std::unique_ptr<FieldSource> source);
 
  private:
   void visit(unsigned fields, const std::function<void(Snapshot&)>& work) const override;
+  /// With positions as the source has them, counted from origin_.
   Snapshot range(unsigned fields, size_t first, size_t size) const;
+  void to_scene_places(std::vector<double>& places) const;
   std::int64_t id_of(size_t p) const { return ids_.empty() ? static_cast<std::int64_t>(p) : ids_[p]; }
 
   const Scene& scene_;
+  Point origin_;  ///< run/local_origin.hpp
   const std::vector<int>& ids_;
   std::vector<PlacedBody> bodies_;
   std::unique_ptr<FieldSource> source_;

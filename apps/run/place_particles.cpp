@@ -96,6 +96,22 @@ PlacedParticles place_particles(const Scene& scene) {
   return placed;
 }
 
+MassCentre mass_centre(const Scene& scene, const PlacedParticles& placed) {
+  MassCentre centre;
+  Point
+      moment{};  // about the first particle: differences of large coordinates are exact where they are small
+  const Point& near = placed.position.front();
+  for (size_t b = 0; b < scene.bodies.size(); ++b)
+    for (int p = placed.bodies[b].first; p < placed.bodies[b].last; ++p) {
+      const auto n = static_cast<size_t>(p);
+      const double mass = scene.bodies[b].density * placed.volume[n];
+      centre.mass += mass;
+      for (size_t i = 0; i < 3; ++i) moment[i] += mass * (placed.position[n][i] - near[i]);
+    }
+  for (size_t i = 0; i < 3; ++i) centre.position[i] = near[i] + moment[i] / centre.mass;
+  return centre;
+}
+
 void for_each_start(const Scene& scene, const std::function<void(const Point&)>& visit) {
   CutVolume cut;
   for (size_t b = 0; b < scene.bodies.size(); ++b)

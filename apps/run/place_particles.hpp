@@ -43,6 +43,13 @@ struct PlacedParticles {
 /// grid.
 PlacedParticles place_particles(const Scene& scene);
 
+/// Their mass, kg, and its centre.
+struct MassCentre {
+  double mass = 0;
+  Point position{};
+};
+MassCentre mass_centre(const Scene& scene, const PlacedParticles& placed);
+
 /// Calls visit(x) for all of them in order, x being where they are placed, and keeps none.
 void for_each_start(const Scene& scene, const std::function<void(const Point&)>& visit);
 

@@ -32,7 +32,7 @@ double length(const Point& v) {
 ResultantShare resultant_share(const Scene& scene, const BalanceReport& balance,
                                const ParticleReader& initial, double time) {
   ResultantShare share;
-  const auto resultants = exact_resultants(scene);
+  const auto resultants = exact_resultants(scene, balance.torque_about);
   for (size_t k = 0; k < resultants.size(); ++k)
     share.load += std::abs(scene.tractions[k].time(time)) * resultants[k].load;
 
@@ -46,7 +46,8 @@ ResultantShare resultant_share(const Scene& scene, const BalanceReport& balance,
   }
   for (size_t i = 0; i < 3; ++i) {
     const size_t j = (i + 1) % 3, k = (i + 2) % 3;
-    torque[i] -= middle[j] * force[k] - middle[k] * force[j];
+    torque[i] -=
+        (middle[j] - balance.torque_about[j]) * force[k] - (middle[k] - balance.torque_about[k]) * force[j];
   }
   share.net_force = length(force) / share.load;
   share.net_torque = length(torque) / (share.load * half_width);

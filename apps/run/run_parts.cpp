@@ -59,6 +59,10 @@ void take_state(RunFigures& figures, const Scene& scene, Simulation& simulation)
   figures.cut = simulation.cut_volume();
   figures.moment_fit = simulation.moment_fit();
   figures.particles = simulation.particle_count();
+  figures.outflow = simulation.outflow();
+  simulation.read_particles()->for_each_range(field::mass, [&](const Snapshot& s) {
+    for (const double m : s.mass) figures.mass += m;
+  });
   figures.boundary_nodes = simulation.boundary_nodes();
   figures.void_filter = simulation.void_filter();
   figures.state_hash = state_hash(simulation);

@@ -156,6 +156,7 @@ RunResult run(const Scene& scene, const RunOptions& options) {
   RunFigures figures;
   CheckpointClock clock(scene.output.checkpoint_minutes);
   bool found_static = false, diverged = false, done = false;
+  std::optional<LeftGrid> left;
   double seconds_before_stage = 0;
   const auto stage_seconds = [&] { return figures.seconds - seconds_before_stage; };
   const auto write_checkpoint = [&] {
@@ -247,13 +248,23 @@ RunResult run(const Scene& scene, const RunOptions& options) {
       }
     }
     simulation->check_health();
+    figures.balance = simulation->balance();
   } catch (const Diverged& error) {
     if (!stages || !stages->end_diverged(error.what(), stage_seconds())) throw;
     diverged = true;
     progress.finish();
     if (reports) print_stage(scene, *stages);
+  } catch (const LeftGrid& error) {
+    progress.finish();
+    if (stages && stages->end_diverged(error.what(), stage_seconds())) {
+      diverged = true;
+      if (reports) print_stage(scene, *stages);
+    } else {
+      left = error;
+      if (reports && left->all) fmt::print("{}; the run ends here\n", left->what());
+    }
   }
-  if (!diverged) figures.balance = simulation->balance();
+  if (left) figures.balance = simulation->balance();
   progress.report(simulation->step(), simulation->step() - first_step, figures.seconds, simulation->step(),
                   figures.balance.force_ratio, false);
   progress.finish();
@@ -264,17 +275,23 @@ RunResult run(const Scene& scene, const RunOptions& options) {
   figures.tractions = watch.report();
   if (stages) figures.stages = stages->report();
   if (!diverged) {
-    if (!stages && framed_step != simulation->step()) write_frame();
+    if (left || (!stages && framed_step != simulation->step())) write_frame();
     take_state(figures, scene, *simulation);
   } else {
     figures.particles = simulation->particle_count();
   }
+  if (left && left->all) figures.particles = 0;
+  if (left && left->all) figures.mass = 0;
+  figures.left_grid = left ? left->what() : "";
   results.write_summary(summary_json(scene, figures));
+  if (left && !left->all)
+    throw LeftGrid(fmt::format("{}; the last frame is the state of this step", left->what()), false);
   if (options.progress_only)
     checkpoints.remove();  // a study has done with the case
-  else if (!diverged && !(figures.steps == resumed_step && checkpoints.last_is_whole()))
+  else if (!diverged && !left && !(figures.steps == resumed_step && checkpoints.last_is_whole()))
     write_checkpoint();
   if (reports) print_report(scene, figures);
+  if (left) return {exit_done, figures};
   if (!scene.time.until_static || found_static || stages) return {exit_done, figures};
   if (!options.progress_only)
     fmt::print(stderr, "vsb: not static after max_steps = {} (force ratio {:.2e}, energy ratio {:.2e})\n",

@@ -19,7 +19,8 @@ enum ExitCode {
   exit_files = 4,
   exit_interrupted = 5,
   exit_study_failed = 6,  ///< a study was run, but not all of its expectations are met
-  exit_not_static = 7     ///< a run until static, or a static solution, came to its last step before it was
+  exit_not_static = 7,    ///< a run until static, or a static solution, came to its last step before it was
+  exit_left_grid = 8      ///< a healthy body left the grid; its last state is a frame
 };
 
 struct RunOptions {
@@ -37,7 +38,8 @@ struct RunResult {
   RunFigures figures;  ///< of an interrupted run only the steps and their time
 };
 
-/// Throws SetupError before anything is written, Diverged, FileError; NotStatic for a static solution.
+/// Throws SetupError before anything is written, Diverged, FileError; NotStatic for a static solution;
+/// LeftGrid after the last state and the summary are written.
 RunResult run_scene(const Scene& scene, const RunOptions& options);
 
 /// Prints the resolved scene and what a run of it would cost; writes no file. Throws SetupError.

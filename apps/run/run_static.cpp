@@ -38,8 +38,7 @@ void refuse_moving_scenes(const Scene& scene) {
 double largest_displacement(const ParticleReader& particles) {
   double largest = 0;
   particles.for_each_range(field::position | field::initial_position, [&](const Snapshot& s) {
-    for (size_t i = 0; i < s.position.size(); ++i)
-      largest = std::max(largest, std::abs(s.position[i] - s.initial_position[i]));
+    for (const double u : s.displacement) largest = std::max(largest, std::abs(u));
   });
   return largest;
 }

@@ -8,15 +8,9 @@
 #include <vector>
 #include <vsb/kernels/mark_boundary_nodes.hpp>
 #include "run/field_advice.hpp"
+#include "run/local_origin.hpp"
 
 namespace vsb::app {
-
-template <int Dim, class Real>
-Vector<Dim, Real> to_vector(const Point& x) {
-  Vector<Dim, Real> v;
-  for (int i = 0; i < Dim; ++i) v[i] = static_cast<Real>(x[static_cast<size_t>(i)]);
-  return v;
-}
 
 /// A node's numbers along the axes in the scene's grid.
 template <class Basis>
@@ -61,12 +55,14 @@ size_t scene_cell(const Scene& scene, const Basis&, const Vector<Basis::dimensio
 template <class Basis>
 OccupiedCells occupied_cells(const Scene& scene, const Basis& basis, const PlacedParticles& placed) {
   using Real = typename decltype(basis.grid)::real;
+  const Point origin = local_origin(scene);
   OccupiedCells cells;
   for (size_t i = 0; i < Basis::dimension; ++i) cells.cells[i] = scene.grid.cells[i];
   cells.occupied.resize(scene_cell_count(scene));
   for (const Point& x : placed.position)
-    cells.occupied[scene_cell(scene, basis,
-                              basis.grid.cell_containing(to_vector<Basis::dimension, Real>(x)))] = true;
+    cells.occupied[scene_cell(
+        scene, basis, basis.grid.cell_containing(to_local<Vector<Basis::dimension, Real>>(x, origin)))] =
+        true;
   return cells;
 }
 

@@ -7,6 +7,7 @@
 #include <vsb/kernels/build_lanes.hpp>
 #include <vsb/kernels/update_stress.hpp>
 #include <vsb/views/particles.hpp>
+#include "run/local_origin.hpp"
 #include "run/material_of.hpp"
 #include "run/place_particles.hpp"
 
@@ -54,6 +55,7 @@ void fill_particles(const Scene& scene, const PlacedParticles& placed, const std
                     const std::vector<Body<Real>>& bodies, const ParticleBlock<Dim, Real, Device>& block) {
   const auto host = host_copy(block);
   const auto& p = host.particles;
+  const Point origin = local_origin(scene);
   for (size_t b = 0; b < bodies.size(); ++b) {
     const auto& body = scene.bodies[b];
     for (int n = bodies[b].first; n < bodies[b].last; ++n) {
@@ -62,7 +64,7 @@ void fill_particles(const Scene& scene, const PlacedParticles& placed, const std
       const auto stress = body.stress.at(x);
       const auto velocity = body.velocity.at(x);
       for (size_t d = 0; d < Dim; ++d) {
-        p.position(i, d) = static_cast<Real>(x[d]);
+        p.position(i, d) = static_cast<Real>(x[d] - origin[d]);
         p.velocity(i, d) = static_cast<Real>(velocity[d]);
       }
       for (size_t c = 0; c < SymmetricTensor<Dim, Real>::size; ++c)

@@ -31,9 +31,10 @@ PlacedSurface<Basis::dimension, Real, Device> place_surface_points(const Scene& 
   const auto position = Kokkos::create_mirror_view(s.position), area = Kokkos::create_mirror_view(s.area);
   const auto tractions = Kokkos::create_mirror_view(s.tractions);
   const auto carrier = Kokkos::create_mirror_view(s.carrier);
+  const Point origin = local_origin(scene);
   for (size_t b = 0; b < points.size(); ++b) {
     for (size_t i = 0; i < Dim; ++i) {
-      position(b, i) = static_cast<Real>(points[b].position[i]);
+      position(b, i) = static_cast<Real>(points[b].position[i] - origin[i]);
       area(b, i) = static_cast<Real>(points[b].area[i]);
     }
     tractions(b) = points[b].tractions;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "run/byte_stream.hpp"
+#include "run/leaving.hpp"
 #include "run/particle_reader.hpp"
 #include "scene/scene.hpp"
 
@@ -26,6 +27,14 @@ struct SetupError : std::runtime_error {
 /// A run that has become meaningless; the text names step, time, particle and field.
 struct Diverged : std::runtime_error {
   using std::runtime_error::runtime_error;
+};
+
+/// A healthy body that went out of the grid, where nothing says that it may; the text names step, time,
+/// particle, place and face. Or all particles that there were went where they may. The state can be read, not
+/// advanced.
+struct LeftGrid : std::runtime_error {
+  LeftGrid(const std::string& text, bool all_let_go) : std::runtime_error(text), all(all_let_go) {}
+  bool all;  ///< they were let go
 };
 
 /// A static state that was not found; the text says how far it got.
@@ -43,8 +52,9 @@ struct GridSnapshot {
 /// How far from equilibrium; see kernels/balance.hpp.
 struct BalanceReport {
   double force_ratio = 1, energy_ratio = 0;
-  Point net_force{}, net_torque{};      ///< of the tractions as imposed; the torque about the origin
+  Point net_force{}, net_torque{};      ///< of the tractions as imposed
   Point exact_force{}, exact_torque{};  ///< of the tractions on the initial surface of the bodies
+  Point torque_about{};  ///< the bodies' centre of mass at the start, m: the torques are about it
 };
 
 /// What a traction that acts on boundary nodes does at the moment, at full load.
@@ -69,11 +79,12 @@ struct StaticSolution {
   BalanceReport balance;      ///< at the initial positions
 };
 
-/// What a run that removes particles in stages (run/stages.hpp) has beside the particles that are left.
+/// What a run that removes particles has beside the particles that are left.
 struct StagedState {
   std::vector<unsigned char> present;  ///< [particle at the start]: not 0 where it is left
   long long loads_begin = 0;           ///< the step of the last reset
-  std::string stages;                  ///< of run/stages.hpp
+  std::string stages;                  ///< of run/stages.hpp, where there are stages
+  std::vector<std::int64_t> outflow;   ///< OutflowReport::numbers
 };
 
 /// How a run goes on after a removal of particles.
@@ -114,7 +125,11 @@ class Simulation {
   /// Memory of particles, nodes and occupancy at present.
   virtual size_t state_bytes() const = 0;
 
-  /// Makes `steps` steps. Throws Diverged when a particle leaves the grid.
+  /// What left the grid at faces with "outflow" so far.
+  virtual OutflowReport outflow() const = 0;
+
+  /// Makes `steps` steps; particles that leave the grid at faces with "outflow" are removed. Throws LeftGrid
+  /// when others leave it, or Diverged where the state looks as if the steps were unstable.
   virtual void advance(long long steps) = 0;
   /// Gives the particles of step 0 the stress and the displacement of the static state under the loads of
   /// time t, s, where it is found. go_on(iteration, residual) may end the search. Throws SetupError where a

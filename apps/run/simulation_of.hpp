@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include <map>
+#include <optional>
 #include <vsb/kernels/balance.hpp>
 #include <vsb/kernels/flag_boundary_particles.hpp>
 #include <vsb/kernels/health.hpp>
@@ -39,25 +41,28 @@ class SimulationOf final : public Simulation {
  public:
   explicit SimulationOf(const Scene& scene)
       : scene_(scene),
-        owned_basis_(scene),
+        origin_(local_origin(scene)),
+        owned_basis_(scene, origin_),
         basis_(owned_basis_.basis),
-        on_host_(basis_on_host(scene, owned_basis_)),
-        loads_(scene) {
+        on_host_(basis_on_host(scene, origin_, owned_basis_)),
+        loads_(scene, origin_) {
     const auto placed = place_particles(scene_);
     if (!scene.grid.mapped() && Basis::reach == 0) refuse_on_grid_lines(scene_, placed);
     placed_count_ = static_cast<int>(placed.position.size());
     cut_ = placed.cut;
     moment_fit_ = placed.moment_fit;
-    near_ = to_vector<Dim, Real>(placed.position.front());
+    near_ = to_local<Vector<Dim, Real>>(placed.position.front(), origin_);
+    at_start_ = mass_centre(scene_, placed);
     bodies_ = bodies_of<Dim, Real>(scene_, placed);
     declared_ = declared_tractions<Device>(scene_, basis_, loads_.on_nodes() & ~carried_tractions(scene_));
     carried_ = carried_by_particles(scene_, placed);
     const auto surface = place_surface_points<Real, Device>(scene_, on_host_.basis, placed);
     surface_ = surface.points;
-    resultants_ = exact_resultants(scene_);
+    resultants_ = exact_resultants(scene_, at_start_.position);
     options_ = step_options<Dim, Real>(scene_);
 
     particle_kernels_because_ = reason_for_particle_kernels(scene_);
+    refuse_unresolved_places(scene_, particle_kernels_because_.empty());
     memory_ = allocate_memory();
     fill_particles(scene_, placed, ids_, bodies_, memory_->block);
     auto& occupancy = memory_->state.occupancy;
@@ -92,6 +97,20 @@ class SimulationOf final : public Simulation {
     return {effect.false_voids, effect.dropped_nodes};
   }
   std::vector<std::string> advice() const override { return advice_; }
+  OutflowReport outflow() const override {
+    auto report = outflow_;
+    report.mass_at_start = at_start_.mass;
+    if (report.particles == 0) return report;
+    std::vector<bool> gone(static_cast<size_t>(placed_count_), true);
+    for (int p = 0; p < particle_count(); ++p)
+      if (!all_gone_) gone[static_cast<size_t>(id_of(p))] = false;
+    const auto placed = place_particles(scene_);
+    for (size_t b = 0; b < scene_.bodies.size(); ++b)
+      for (auto id = static_cast<size_t>(placed.bodies[b].first);
+           id < static_cast<size_t>(placed.bodies[b].last); ++id)
+        if (gone[id]) report.mass_gone += scene_.bodies[b].density * placed.volume[id];
+    return report;
+  }
 
   size_t state_bytes() const override {
     const auto bytes = [](const auto&... views) { return (... + (views.span() * sizeof(*views.data()))); };
@@ -114,14 +133,19 @@ class SimulationOf final : public Simulation {
   void advance(long long steps) override {
     if constexpr (has_lanes)
       if (particle_kernels_because_.empty()) return advance_lanes(steps);
-    for (long long n = 0; n < steps; ++n) {
+    for (long long n = 0; n < steps;) {
       set_loads(load_time_at(step_ + 1));
       const int lost = with_field([&](const auto& field) {
         return vsb::step(exec_, memory_->state, bodies_, basis_, field, options_);
       });
-      if (lost >= 0) throw_lost(lost);
+      if (lost >= 0) {  // the step is not made; those that are left make it
+        take_leave(lost);
+        continue;
+      }
       ++step_;
+      ++n;
     }
+    if (scene_.faces.any_outflow()) locate();  // whoever looks at the particles finds none outside
     exec_.fence();
   }
 
@@ -132,7 +156,7 @@ class SimulationOf final : public Simulation {
     const auto found = vsb::app::solve_static(
         exec_, scene_, state, bodies_, basis_, options_, [&](const auto& work) { return with_field(work); },
         go_on);
-    if (found.lost >= 0) throw_lost(particle_count() + found.lost);
+    if (found.lost >= 0) take_leave(particle_count() + found.lost);
     StaticSolution solution;
     solution.iterations = found.result.iterations;
     solution.residual = found.result.residual;
@@ -158,8 +182,13 @@ class SimulationOf final : public Simulation {
     report.force_ratio = b.force_ratio();
     report.energy_ratio = b.strain_energy > 0 ? b.kinetic_energy / b.strain_energy : 1.0;
     for (int i = 0; i < Dim; ++i) report.net_force[static_cast<size_t>(i)] = b.net_force[i];
+    report.torque_about = at_start_.position;
+    Point arm;  // to there from the local origin, about which the kernels' torque is
+    for (size_t i = 0; i < 3; ++i) arm[i] = at_start_.position[i] - origin_[i];
     for (size_t i = 0; i < 3; ++i) {
-      report.net_torque[i] = b.net_torque[static_cast<int>(i)];
+      const size_t j = (i + 1) % 3, l = (i + 2) % 3;
+      report.net_torque[i] =
+          b.net_torque[static_cast<int>(i)] - (arm[j] * report.net_force[l] - arm[l] * report.net_force[j]);
       for (size_t k = 0; k < scene_.tractions.size(); ++k) {
         const double factor = scene_.tractions[k].time(t);
         report.exact_force[i] += factor * resultants_[k].force[i];
@@ -214,6 +243,7 @@ class SimulationOf final : public Simulation {
     std::vector<PlacedBody> bodies;
     for (const auto& body : bodies_) bodies.push_back({body.first, body.last});
     auto reader = std::make_unique<SceneReader>(scene_, ids_, std::move(bodies), std::move(fields));
+    reader->outside = outside_;
     reader->step = step_;
     reader->time = time();
     reader->count = static_cast<size_t>(particle_count());
@@ -271,7 +301,7 @@ class SimulationOf final : public Simulation {
 
   void remove(const std::vector<unsigned char>& removed, const Restart& restart) override {
     const bool anew = lanes_ && restart.reset;  // nothing of the present state will be left
-    if (!anew) bring_back();
+    if (!anew) to_memory();
     lanes_.reset();
     keep(removed, anew);
     if (restart.damping) options_.damping = static_cast<Real>(*restart.damping);
@@ -400,9 +430,14 @@ class SimulationOf final : public Simulation {
     lanes_->unpack(memory_->block.particles, surface_);
   }
 
+  void to_memory() {
+    bring_back();
+    lanes_.reset();
+  }
+
   std::unique_ptr<Engine> make_lanes() const {
     typename Engine::Setup setup;
-    setup.grid = uniform_grid<Dim, Real>(scene_.grid);
+    setup.grid = uniform_grid<Dim, Real>(scene_.grid, origin_);
     setup.walls = walls<Dim>(scene_.faces);
     setup.tractions = declared_;
     setup.carried.particle = carried_view();
@@ -426,19 +461,22 @@ class SimulationOf final : public Simulation {
     lanes_ = std::move(lanes);
   }
   void advance_lanes(long long steps) {
-    pack();
-    if (!lanes_->prepared()) {
-      set_loads(load_time_at(step_ + 1));
-      const int lost = lanes_->prepare(loads_);
-      if (lost >= 0) throw_lost(lost);
-    }
     for (long long n = 0; n < steps; ++n) {
+      prepare_lanes();
       set_loads(load_time_at(step_ + 2));
       const int lost = lanes_->step(loads_);
       ++step_;
-      if (lost >= 0) throw_lost(lost);
+      if (lost >= 0) take_leave(lost);
     }
+    pack();
     exec_.fence();
+  }
+  void prepare_lanes() {
+    pack();
+    if (lanes_->prepared()) return;
+    set_loads(load_time_at(step_ + 1));
+    const int lost = lanes_->prepare(loads_);
+    if (lost >= 0) take_leave(lost);
   }
 
   /// Takes particles out of everything that counts them; `all_anew`: but for memory_, which goes.
@@ -446,11 +484,13 @@ class SimulationOf final : public Simulation {
     const auto kept = keep_in_bodies<Dim>(bodies_, removed);
     std::vector<int> ids;
     for (const int p : kept.particles) ids.push_back(id_of(p));
+    const bool first_goes = ids.front() != id_of(0);
     ids_ = std::move(ids);
     int id = 0;
-    for_each_start(scene_, [&](const Point& x) {
-      if (id++ == ids_.front()) near_ = to_vector<Dim, Real>(x);
-    });
+    if (first_goes)
+      for_each_start(scene_, [&](const Point& x) {
+        if (id++ == ids_.front()) near_ = to_local<Vector<Dim, Real>>(x, origin_);
+      });
     if (all_anew) {
       memory_.reset();
       return;
@@ -464,23 +504,25 @@ class SimulationOf final : public Simulation {
 
   /// The particles that are left, of all there were at the start.
   StagedState staged_state() const {
-    if (!scene_.removal) return {};
+    if (!may_lose_particles(scene_)) return {};
     StagedState staged;
+    staged.outflow = outflow_.numbers();
     staged.loads_begin = loads_begin_;
     staged.present.assign(static_cast<size_t>(placed_count_), ids_.empty() ? 1 : 0);
     for (const int id : ids_) staged.present[static_cast<size_t>(id)] = 1;
     return staged;
   }
   void restore_staged(const StagedState& staged) {
-    if (!scene_.removal) return;
+    if (!may_lose_particles(scene_)) return;
     if (staged.present.size() != static_cast<size_t>(placed_count_) || !ids_.empty())
       throw SetupError("the checkpoint belongs to another scene: it has other particles");
     std::vector<unsigned char> removed(staged.present);
     for (auto& flag : removed) flag = flag == 0;
     Restart restart;
-    if (!scene_.removal->reset) restart.damping = scene_.removal->damping;
+    if (scene_.removal && !scene_.removal->reset) restart.damping = scene_.removal->damping;
     if (std::find(removed.begin(), removed.end(), 1) != removed.end()) remove(removed, restart);
     loads_begin_ = staged.loads_begin;
+    outflow_ = OutflowReport::from_numbers(staged.outflow);
   }
 
   double load_time_at(long long step) const {
@@ -519,7 +561,7 @@ class SimulationOf final : public Simulation {
     const auto points = lanes_->mass_points();
     auto bins = allocate_bins<Device>(particle_count(), basis_.bin_count());
     const auto where = locate_particles(exec_, points, bins, basis_);
-    if (where.lost >= 0) throw_lost(where.lost);
+    if (where.lost >= 0) take_leave(where.lost);
     sort_by_bin(exec_, bins);
     over_nodes(points, bins);
   }
@@ -535,8 +577,10 @@ class SimulationOf final : public Simulation {
   }
 
   void locate() {
-    const int lost = update_occupancy(exec_, memory_->state.particles, memory_->state.occupancy, basis_);
-    if (lost >= 0) throw_lost(lost);
+    for (int lost = 0; lost >= 0;) {
+      lost = update_occupancy(exec_, memory_->state.particles, memory_->state.occupancy, basis_);
+      if (lost >= 0) take_leave(lost);
+    }
   }
 
   void throw_spoilt(const Invalid& bad) const {
@@ -549,28 +593,134 @@ class SimulationOf final : public Simulation {
                                id_of(bad.particle), faults[f]));
   }
 
-  [[noreturn]] void throw_lost(int particle) {
-    const Loan loan(*this);  // those that found no place in the lanes are among them
-    throw_spoilt(find_invalid(exec_, memory_->state.particles));
-    if (particle >= particle_count())
-      throw Diverged(
-          fmt::format("at step {}, time {:.6g} s: position of surface point {} is outside the grid", step_,
-                      time(), particle - particle_count()));
+  /// Particles are outside the grid, `lost` among them, or a surface point is (lost >= particle_count()).
+  /// Where the faces let them go, they are removed; else throws.
+  void take_leave(int lost) {
+    const bool from_lanes = lanes_ != nullptr;  // to which round-off at a face may be outside, or not
+    to_memory();                                // those that found no place in the lanes are among them
+    auto& state = memory_->state;
+    throw_spoilt(find_invalid(exec_, state.particles));
     const auto host = host_copy(memory_->block);
-    std::string where;
-    for (int i = 0; i < Dim; ++i)
-      where += fmt::format("{}{:.6g}", i == 0 ? "" : ", ",
-                           host.particles.position(static_cast<size_t>(particle), static_cast<size_t>(i)));
-    throw Diverged(
-        fmt::format("at step {}, time {:.6g} s: position of particle {}, ({}) m, is outside the grid", step_,
-                    time(), id_of(particle), where));
+    refuse_unstable(host.particles);
+    std::vector<unsigned char> leaves(static_cast<size_t>(particle_count()), 0);
+    std::map<int, Point> outside;
+    bool let_go = lost < particle_count();
+    OutflowReport gone = outflow_;
+    for (int p = 0; p < particle_count(); ++p) {
+      const auto x = host.particles.position_of(p);
+      if (on_host_.basis.contains(x) && (p != lost || from_lanes)) continue;
+      outside[p] = to_scene(x, origin_);
+      leaves[static_cast<size_t>(p)] = 1;
+      const auto open = outflow_face(outside[p]);
+      let_go = let_go && open;
+      if (open) gone.add(step_, *open);
+    }
+    const bool all = let_go && static_cast<int>(outside.size()) == particle_count();
+    if (let_go) outflow_ = gone;
+    if (let_go && !all) return keep(leaves, false);
+    const auto what =
+        all ? fmt::format("at step {}, time {:.6g} s: the last particles left the grid", step_, time())
+            : leave_text(lost, outside, host.particles);
+    stand_in_grid(outside, host);
+    all_gone_ = all;
+    throw LeftGrid(what, all);
+  }
+
+  /// The face that lets a particle at x outside the grid go.
+  std::optional<GridFace> outflow_face(const Point& x) const {
+    for (const auto& face : faces_passed(scene_, x))
+      if (scene_.faces.outflow[face.axis][face.side]) return face;
+    return {};
+  }
+
+  /// Throws Diverged where a particle has what only an unstable step gives.
+  template <class HostParticles>
+  void refuse_unstable(const HostParticles& particles) const {
+    for (size_t b = 0; b < bodies_.size(); ++b) {
+      const double modulus =
+          std::visit([](const auto& m) { return double(m.constrained_modulus()); }, bodies_[b].material);
+      const double wave_speed = std::sqrt(modulus / scene_.bodies[b].density);
+      for (int p = bodies_[b].first; p < bodies_[b].last; ++p) {
+        const double speed = speed_of(particles, p);
+        double stress = 0;
+        const auto sigma = particles.stress_of(p);
+        for (int c = 0; c < sigma.size; ++c)
+          stress = std::max(stress, std::abs(static_cast<double>(sigma[c])));
+        if (looks_unstable(speed, wave_speed, stress, modulus))
+          throw Diverged(
+              fmt::format("at step {}, time {:.6g} s: particles leave the grid, and particle {} moves at "
+                          "{:.3g} of the wave "
+                          "speed under {:.3g} of its modulus",
+                          step_, time(), id_of(p), speed / wave_speed, stress / modulus));
+      }
+    }
+  }
+  template <class HostParticles>
+  static double speed_of(const HostParticles& particles, int p) {
+    const auto v = particles.velocity_of(p);
+    double square = 0;
+    for (int i = 0; i < Dim; ++i) square += static_cast<double>(v[i]) * static_cast<double>(v[i]);
+    return std::sqrt(square);
+  }
+
+  template <class HostParticles>
+  std::string leave_text(int lost, const std::map<int, Point>& outside,
+                         const HostParticles& particles) const {
+    const auto when = fmt::format("at step {}, time {:.6g} s: ", step_, time());
+    if (lost >= particle_count())
+      return when + fmt::format("surface point {}, which carries a traction, left the grid",
+                                lost - particle_count());
+    const auto held = [&](const GridFace& face) { return scene_.faces.fixed[face.axis][face.side] != 0; };
+    int p = outside.begin()->first;  // the first that nothing lets go
+    for (const auto& [other, x] : outside)
+      if (!outflow_face(x)) {
+        p = other;
+        break;
+      }
+    const Point& x = outside.at(p);
+    const auto face = faces_passed(scene_, x).front();
+    const auto name = face_name(scene_, face);
+    return when +
+           fmt::format(
+               "particle {} left the grid at the {} face {}, at {}, moving at {:.3g} m/s{}; {}", id_of(p),
+               held(face) ? "held" : "open", name, place_text(scene_, x), speed_of(particles, p),
+               outside.size() > 1 ? fmt::format(", and {} others in this step", outside.size() - 1) : "",
+               held(face) ? "a shorter time step may keep it inside"
+                          : fmt::format("make the grid larger, or let such particles go: faces.{} = "
+                                        "\"outflow\"",
+                                        name));
+  }
+
+  /// For reading: particles and surface points outside go to a place in the grid.
+  template <class HostBlock>
+  void stand_in_grid(const std::map<int, Point>& outside, const HostBlock& host) {
+    const auto place = [&](const auto& position, int n, const Point& x) {
+      const auto inside = to_local<Vector<Dim, Real>>(place_inside(scene_, x), origin_);
+      for (int i = 0; i < Dim; ++i) position(static_cast<size_t>(n), static_cast<size_t>(i)) = inside[i];
+    };
+    for (const auto& [p, x] : outside) place(host.particles.position, p, x);
+    copy_to_device(host, memory_->block);
+    outside_ = outside;
+    for (auto& [p, x] : outside_)
+      for (size_t i = 0; i < 3; ++i) x[i] -= origin_[i];
+    const auto& points = memory_->state.surface;
+    if (points.count() == 0) return;
+    const auto on_host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.position);
+    for (int b = 0; b < points.count(); ++b) {
+      Vector<Dim, Real> x;
+      for (int i = 0; i < Dim; ++i) x[i] = on_host(static_cast<size_t>(b), static_cast<size_t>(i));
+      if (!on_host_.basis.contains(x)) place(on_host, b, to_scene(x, origin_));
+    }
+    Kokkos::deep_copy(points.position, on_host);
   }
 
   Scene scene_;
+  Point origin_;  ///< from where places are counted
   ExecutionSpace exec_;
   OwnedBasis<Basis> owned_basis_;
   Basis basis_;
-  decltype(basis_on_host(std::declval<const Scene&>(), std::declval<const OwnedBasis<Basis>&>())) on_host_;
+  decltype(basis_on_host(std::declval<const Scene&>(), std::declval<const Point&>(),
+                         std::declval<const OwnedBasis<Basis>&>())) on_host_;
   Loads<Dim, Real> loads_;
   std::vector<Resultant> resultants_;  ///< of each traction at full load
   int placed_count_ = 0;               ///< particles at the start
@@ -578,12 +728,16 @@ class SimulationOf final : public Simulation {
   MomentFit moment_fit_;
   std::vector<std::string> advice_;
   Vector<Dim, Real> near_;  ///< where the first particle began
+  MassCentre at_start_;     ///< of all particles
   std::vector<Body<Real>> bodies_;
   std::vector<int> ids_;  ///< of the particles that are left; empty before a removal
   BoundaryNodes<Device> declared_;
   std::vector<TractionMask> carried_;  ///< [particle at the start]: tractions that move with it; may be empty
   SurfacePoints<Dim, Real, Device> surface_;  ///< none, unless a traction is imposed on points
   StepOptions<Dim, Real> options_{};
+  OutflowReport outflow_;         ///< its masses aside
+  std::map<int, Point> outside_;  ///< after LeftGrid: where particles are that stand in the grid for reading
+  bool all_gone_ = false;         ///< these were the last, and let go
   long long step_ = 0, loads_begin_ = 0;
   std::string particle_kernels_because_;
   std::unique_ptr<Memory> memory_;

@@ -46,8 +46,8 @@ StaticState<Dim, Real, Device> solve_static(const Exec& exec, const Scene& scene
                                                 options.scatter, options.volumetric);
   if (sum_of_forces(exec, state.nodes) > round_off) {
     const auto& wanted = scene.static_solution;
-    refuse_unsupported(find_unsupported_load(exec, state.nodes, state.occupancy.bins, basis,
-                                             std::max(wanted.residual, 1e-11)));
+    refuse_unsupported(scene, find_unsupported_load(exec, state.nodes, state.occupancy.bins, basis,
+                                                    std::max(wanted.residual, 1e-11)));
     found.result = solve_displacement(exec, stiffness, state.nodes, u,
                                       StaticOptions{wanted.residual, wanted.max_iterations}, go_on);
   }

@@ -13,6 +13,7 @@
 
 #include "files/build_info.hpp"
 #include "run/comparison.hpp"
+#include "run/local_origin.hpp"
 #include "scene/toml_reader.hpp"
 
 namespace vsb::app {
@@ -57,6 +58,10 @@ std::vector<std::pair<std::string, double>> named_figures(const Scene& scene, co
   if (scene.method.void_filter) {
     named.emplace_back("false_voids", f.void_filter.false_voids);
     named.emplace_back("dropped_nodes", f.void_filter.dropped_nodes);
+  }
+  if (scene.faces.any_outflow()) {
+    named.emplace_back("outflow_particles", static_cast<double>(f.outflow.particles));
+    named.emplace_back("outflow_mass", f.outflow.mass_gone);
   }
   if (scene.removal) {
     const auto staged = stage_figures(f.stages, scene.removal->max_stages, scene.removal->hole.has_value());
@@ -141,6 +146,7 @@ std::string summary_json(const Scene& scene, const RunFigures& f) {
       {"net_torque", array(f.balance.net_torque)},
       {"exact_force", array(f.balance.exact_force)},
       {"exact_torque", array(f.balance.exact_torque)},
+      {"torque_about", array(f.balance.torque_about)},
       {"state_hash", f.state_hash},
       {"seconds", f.seconds},
       {"ns_per_particle_step", f.ns_per_particle_step()},
@@ -153,6 +159,21 @@ std::string summary_json(const Scene& scene, const RunFigures& f) {
     summary.insert("resultant", toml::table{{"load", f.share.load},
                                             {"net_force_share", f.share.net_force},
                                             {"net_torque_share", f.share.net_torque}});
+  if (!f.left_grid.empty()) summary.insert("left_grid", f.left_grid);
+  if (scene.faces.any_outflow()) {
+    const auto& out = f.outflow;
+    toml::table faces;
+    for (size_t face = 0; face < 6; ++face)
+      if (scene.faces.outflow[face / 2][face % 2])
+        faces.insert(face_name(scene, {face / 2, face % 2}), out.by_face[face / 2][face % 2]);
+    summary.insert("outflow", toml::table{{"particles", out.particles},
+                                          {"first_step", out.first_step},
+                                          {"last_step", out.last_step},
+                                          {"faces", faces},
+                                          {"mass_at_start", out.mass_at_start},
+                                          {"mass", out.mass_gone},
+                                          {"mass_in_grid", f.mass}});
+  }
   if (scene.removal) summary.insert("removal", toml::table(toml::parse(to_toml(f.stages))));
   if (f.cut.particles > 0)
     summary.insert("cut_bodies", toml::table{{"volume", f.cut.particles + f.cut.dropped},
@@ -178,8 +199,10 @@ void print_resultant(const Scene& scene, const BalanceReport& balance, const std
   fmt::print("{}resultant of the tractions {} N, on the exact surface {} N\n", prefix,
              text(balance.net_force), text(balance.exact_force));
   if (scene.dimension > 1)
-    fmt::print("{}their torque about the origin {} N m, on the exact surface {} N m\n", prefix,
-               text(balance.net_torque), text(balance.exact_torque));
+    fmt::print(
+        "{}their torque about {}, the centre of mass at the start, {} N m, on the exact surface {} N m\n",
+        prefix, place_text(scene, balance.torque_about), text(balance.net_torque),
+        text(balance.exact_torque));
 }
 
 double percent_above(double ratio) {
@@ -231,6 +254,12 @@ void print_report(const Scene& scene, const RunFigures& f) {
              static_cast<double>(peak_bytes()) / 1e6);
   print_cut_volume(f.cut, "");
   print_moment_fit(scene, f.moment_fit, "");
+  if (scene.faces.any_outflow())
+    fmt::print(
+        "left the grid: {}; mass {:.6g} kg at the start, {:.6g} kg in the grid, {:.2e} of it unaccounted "
+        "for\n",
+        outflow_text(scene, f.outflow), f.outflow.mass_at_start, f.mass,
+        std::abs(f.outflow.mass_at_start - f.mass - f.outflow.mass_gone) / f.outflow.mass_at_start);
   const auto& b = f.balance;
   fmt::print("force ratio {:.2e}, energy ratio {:.2e}\n", b.force_ratio, b.energy_ratio);
   if (!scene.removal) print_resultant(scene, b, "");  // the surface of the start is there no longer

@@ -32,7 +32,10 @@ struct RunFigures {
   std::vector<TractionReport> tractions;  ///< those on boundary nodes, of an explicit run
   ResultantShare share;                   ///< of a balance alone
   StagesReport stages;                    ///< where particles are removed in stages
-  std::string state_hash;                 ///< of the particles' bits at the end
+  OutflowReport outflow;
+  double mass = 0;         ///< of the particles at the end, kg
+  std::string left_grid;   ///< how a healthy body left the grid, which ended the run
+  std::string state_hash;  ///< of the particles' bits at the end
   std::vector<std::pair<std::string, double>> errors;
   std::vector<std::pair<std::string, double>> compared;  ///< figures of the comparison that are no errors
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <vsb/kernels/mark_boundary_nodes.hpp>
-#include "scene/scene.hpp"
+#include "run/local_origin.hpp"
 
 namespace vsb::app {
 
@@ -13,13 +13,12 @@ template <class Device, class Grid>
 void remove_body_cells(const Scene& scene, const Grid& grid, const typename CellBits<Device>::Rows& cells) {
   constexpr int dimension = Grid::dimension;
   const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), cells, "vsb::cells on host");
+  const Point origin = local_origin(scene);
   for (int n = 0; n < grid.cell_count(); ++n) {
     const auto cell = grid.cell_ijk(n);
     Vector<dimension, typename Grid::real> middle;
     for (int i = 0; i < dimension; ++i) middle[i] = typename Grid::real(0.5);
-    const auto x = grid.map(cell, middle).x;
-    Point centre{};
-    for (int i = 0; i < dimension; ++i) centre[static_cast<size_t>(i)] = x[i];
+    const Point centre = to_scene(grid.map(cell, middle).x, origin);
     for (const auto& body : scene.bodies)
       if (body.region(centre))
         host(static_cast<size_t>(n / grid.cells[0]), static_cast<size_t>(cell[0] / 64)) &=

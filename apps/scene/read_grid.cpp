@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace vsb::app {
 
@@ -104,8 +105,30 @@ GridSpec read_polar(TableReader& document, int dimension) {
   return grid;
 }
 
-/// The components that are fixed at a face.
-unsigned char read_face(TableReader& r, const std::string& key, size_t axis, int dimension, bool polar) {
+/// Of a cell: what double precision must tell apart everywhere in the grid.
+constexpr double coarsest_coordinate = 1e-6;
+
+/// Refuses coordinates so large that two of them a small share of a cell apart are the same number.
+void refuse_coarse_coordinates(const TableReader& r, const std::string& key, const GridSpec& grid,
+                               int dimension) {
+  const auto box = bounding_box(grid, dimension);
+  const double h = shortest_edge(grid, dimension);
+  for (size_t i = 0; i < static_cast<size_t>(dimension); ++i) {
+    const double farthest = std::max(std::abs(box.lower[i]), std::abs(box.upper[i]));
+    const double step = std::numeric_limits<double>::epsilon() * farthest;
+    if (step > coarsest_coordinate * h)
+      r.fail(*r.source().get(key), key,
+             fmt::format(
+                 "the grid lies up to {:.6g} m from the origin along {}, where numbers are {:.2g} m apart, "
+                 "and its cells are {:.6g} m: move the scene to within {:.3g} m",
+                 farthest, axis_names[i], step, h,
+                 coarsest_coordinate * h / std::numeric_limits<double>::epsilon()));
+  }
+}
+
+/// The components that are fixed at a face, and whether it lets particles go.
+unsigned char read_face(TableReader& r, const std::string& key, size_t axis, int dimension, bool polar,
+                        bool& outflow) {
   const toml::node* written = r.source().get(key);
   if (written && written->is_array()) {
     const std::vector<std::string> allowed(axis_names.begin(), axis_names.begin() + dimension);
@@ -118,11 +141,12 @@ unsigned char read_face(TableReader& r, const std::string& key, size_t axis, int
   const bool no_roller = polar && axis < 2;
   if (no_roller && written && written->value<std::string>() == "roller")
     r.fail(*written, key,
-           "must be 'open', 'fixed' or a list of fixed components such as [\"y\"]: a roller "
+           "must be 'open', 'outflow', 'fixed' or a list of fixed components such as [\"y\"]: a roller "
            "needs a face across x, y or z");
-  const auto kinds = no_roller ? std::vector<std::string>{"open", "fixed"}
-                               : std::vector<std::string>{"open", "roller", "fixed"};
+  const auto kinds = no_roller ? std::vector<std::string>{"open", "outflow", "fixed"}
+                               : std::vector<std::string>{"open", "outflow", "roller", "fixed"};
   const std::string kind = r.choice(key, kinds, "open");
+  outflow = kind == "outflow";
   if (kind == "roller") return static_cast<unsigned char>(1 << axis);
   return static_cast<unsigned char>(kind == "fixed" ? (1 << dimension) - 1 : 0);
 }
@@ -144,6 +168,7 @@ GridSpec read_grid(TableReader r, int dimension) {
   GridSpec grid = polar         ? read_polar(r, dimension)
                   : rectilinear ? read_rectilinear(r, dimension)
                                 : read_uniform(r, dimension);
+  refuse_coarse_coordinates(r, polar ? "polar" : rectilinear ? "x" : "lower", grid, dimension);
   r.finish();
   return grid;
 }
@@ -152,8 +177,8 @@ FaceSpec read_faces(TableReader r, int dimension, const GridSpec& grid) {
   FaceSpec faces;
   for (size_t axis = 0; axis < static_cast<size_t>(dimension); ++axis)
     for (size_t side = 0; side < 2; ++side)
-      faces.fixed[axis][side] =
-          read_face(r, grid.axis_name(axis) + (side == 0 ? "_min" : "_max"), axis, dimension, grid.polar);
+      faces.fixed[axis][side] = read_face(r, grid.axis_name(axis) + (side == 0 ? "_min" : "_max"), axis,
+                                          dimension, grid.polar, faces.outflow[axis][side]);
   r.finish();
   return faces;
 }

@@ -419,6 +419,20 @@ bool is_file_name(const std::string& name) {
   return !name.empty() && name.size() <= 200 && name[0] != '.' && std::none_of(name.begin(), name.end(), bad);
 }
 
+/// Particles that go out of the grid take with them what else counts on them.
+void refuse_outflow_beside(const TableReader& r, const Scene& scene) {
+  if (!scene.faces.any_outflow()) return;
+  const auto refuse = [&](const std::string& with) {
+    r.fail(*r.source().get("faces"), "faces", "\"outflow\" is not for scenes with " + with);
+  };
+  if (scene.removal) refuse("removal, whose stages count all particles that are gone as failed");
+  for (const auto& traction : scene.tractions)
+    if (traction.imposition == Imposition::boundary_particles ||
+        traction.imposition == Imposition::material_points)
+      refuse(fmt::format("surface points, which would leave the grid as well (imposition of traction '{}')",
+                         traction.name));
+}
+
 }  // namespace
 
 Scene read_scene(const std::string& path, const std::vector<std::string>& overrides) {
@@ -478,6 +492,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
         "state to run to");
   scene.static_solution = read_static(r.table("static"));
   scene.removal = read_removal(r, scene);
+  refuse_outflow_beside(r, scene);
   scene.output = read_output(r.table("output"), scene);
   scene.compare = read_comparison(r, scene.bodies.front().material, scene.method.basis, scene.more_norms);
   for (auto& table : r.tables("published")) scene.published.push_back(read_published(table, scene));

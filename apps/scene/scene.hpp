@@ -23,6 +23,13 @@ namespace vsb::app {
 /// Prescribed (zero) velocity components at a face of the grid, bit i for component i; open faces have none.
 struct FaceSpec {
   std::array<std::array<unsigned char, 2>, 3> fixed{};  ///< [logical axis][0: lower face, 1: upper]
+  std::array<std::array<bool, 2>, 3> outflow{};         ///< whether an open face lets particles go
+
+  bool any_outflow() const {
+    for (const auto& sides : outflow)
+      if (sides[0] || sides[1]) return true;
+    return false;
+  }
 };
 
 struct BodySpec {
@@ -171,6 +178,11 @@ struct Scene {
 
   std::string resolved;  ///< the scene with all defaults, as TOML
 };
+
+/// Whether particles may be removed on the way.
+inline bool may_lose_particles(const Scene& scene) {
+  return scene.removal.has_value() || scene.faces.any_outflow();
+}
 
 /// The names of the error norms that a scene's comparison yields.
 std::vector<std::string> error_names(const Scene& scene);

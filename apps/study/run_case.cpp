@@ -51,6 +51,9 @@ ExitCode make(const Scene& scene, const RunOptions& options, CaseRecord record, 
     } catch (const Diverged& error) {
       record.state = CaseRecord::State::failed;
       record.message = std::string("diverged ") + error.what();
+    } catch (const LeftGrid& error) {
+      record.state = CaseRecord::State::failed;
+      record.message = error.what();
     } catch (const NotStatic& error) {
       record.state = CaseRecord::State::failed;
       record.message = error.what();

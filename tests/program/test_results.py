@@ -194,22 +194,6 @@ class Ends(ProgramTest):
         self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
         self.assertRegex(done.stderr, r"diverged at step \d+, time [\d.e+-]+ s: \w+ of particle \d+")
 
-    def test_escape_from_the_grid_is_a_divergence(self):
-        scene = self.write("""
-            dimension = 2
-            grid = { lower = [0.0, 0.0], upper = [4.0, 4.0], spacing = 0.5 }
-            time = { kappa = 0.5, steps = 100000 }
-            [[body]]
-            shape = { disc = { center = [2.0, 2.0], radius = 1.0 } }
-            particles_per_cell = 2
-            density = 1000.0
-            velocity = [3.0, 0.0]
-            material = { youngs_modulus = 1e6, poisson_ratio = 0.3 }
-            """)
-        done = vsb("run", scene, "--out", self.folder / "results")
-        self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
-        self.assertRegex(done.stderr, r"time 0\.3\d* s: position of particle \d+, \(4\.\d+, .*\) m, is outside the grid")
-
     def test_results_that_cannot_be_written(self):
         (self.folder / "file").write_text("in the way")
         done = vsb("run", SCENES / "column.toml", "--out", self.folder / "file" / "results")
