@@ -167,7 +167,7 @@ void check_lane_step(const State& s, const Material& material, const Field& next
     refuse(
         "the loads on surface points and those of the original method are missing: call add_lane_loads after "
         "prepare_lane_step and after every lane_step, with the load that these took");
-  check_load(next_virtual_stress, s.boundary.all_declared, s.original != 0 || s.surface.count() > 0);
+  check_load(next_virtual_stress, declared_tractions(s.boundary), s.original != 0 || s.surface.count() > 0);
 }
 
 /// The field of the sweeps: without the tractions of the original method.
@@ -295,7 +295,7 @@ void prepare_lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const 
   detail::check_packed<Exec>(s);
   detail::forget_declarations(s.boundary);
   mark_packed_lanes(exec, s);
-  check_load(virtual_stress, s.boundary.all_declared, s.original != 0 || s.surface.count() > 0);
+  check_load(virtual_stress, declared_tractions(s.boundary), s.original != 0 || s.surface.count() > 0);
   detail::sum_lanes(exec, s, detail::of_sweeps(virtual_stress, s.original));
   detail::note_prepared(s);
 }

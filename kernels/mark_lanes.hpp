@@ -254,6 +254,12 @@ void take_declarations(const Exec& exec, LaneBoundary<Dim, Device>& b, int grid_
 
 }  // namespace detail
 
+/// The tractions declared at some node, or carried by some particle.
+template <int Dim, class Device>
+TractionMask declared_tractions(const LaneBoundary<Dim, Device>& b) {
+  return b.all_declared | b.bits.carried.tractions;
+}
+
 /// Makes the boundary ready for lanes that were packed anew.
 template <class Exec, int Dim, class Real, class Device>
 void fit_boundary(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes, LaneBoundary<Dim, Device>& b) {

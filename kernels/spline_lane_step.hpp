@@ -136,7 +136,7 @@ void prepare_lane_step(const Exec& exec, SplineLaneState<Dim, Real, Device>& s, 
   detail::check_packed<Exec>(s);
   detail::forget_declarations(s.boundary);
   mark_packed_lanes(exec, s);
-  check_load(virtual_stress, s.boundary.all_declared, false);
+  check_load(virtual_stress, declared_tractions(s.boundary), false);
   sum_lanes(exec, s, virtual_stress);
   detail::note_prepared(s);
 }

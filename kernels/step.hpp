@@ -96,7 +96,8 @@ int step(const Exec& exec, State<Dim, Real, Device>& s, const std::vector<Body<R
 
   const int lost = update_occupancy(exec, s.particles, s.occupancy, basis);
   if (lost >= 0) return lost;
-  check_load(virtual_stress, s.occupancy.declared, s.surface.count() > 0);
+  check_load(virtual_stress, s.occupancy.declared | s.occupancy.cells.carried.tractions,
+             s.surface.count() > 0);
   const int lost_point = assemble_forces(exec, s.particles, s.occupancy, s.surface, s.nodes, s.sums_workspace,
                                          basis, virtual_stress, options.gravity, options.scatter);
   if (lost_point >= 0) return s.particles.count() + lost_point;
