@@ -2,16 +2,25 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws the pictures of a run: fields over the body, and profiles against the exact solution.
 
-    python3 apps/plot.py results/cylinder            the last frame
-    python3 apps/plot.py results/cylinder --step 0   another one
+    python3 apps/plot.py results/cylinder                       the last frame
+    python3 apps/plot.py results/cylinder --step 0              the frame of another step; --frame N: the Nth, from 0
+    python3 apps/plot.py results/cylinder --field von_mises     a field of your choice
+    python3 apps/plot.py results/cylinder --field displacement_x --animation     of all frames
 
 Reads the particle frames and summary.json of a results directory; writes NAME_fields.png (2D and 3D scenes) and
-NAME_profiles.png (1D scenes, and those with an exact solution) beside them and prints their paths. Formulas of exact solutions are not repeated here: frames carry the
-exact fields.
+NAME_profiles.png (1D scenes, and those with an exact solution) beside them and prints their paths; with --field NAME_FIELD.png,
+with --animation NAME_FIELD.gif (and .mp4, with ffmpeg at hand). Of a run that was interrupted it draws the last frame that is
+whole, and says so. Formulas of exact solutions are not repeated here: frames carry the exact fields.
+
+Fields are those of the frames (vsb check: output.fields): a number per particle by its name (equivalent_plastic_strain), a
+component with its axes (cauchy_stress_xy, displacement_x), the length of a vector by its name (displacement); and pressure,
+mean_stress and von_mises.
 """
 import argparse
+import functools
 import json
 import pathlib
+import shutil
 import sys
 
 try:
@@ -21,39 +30,122 @@ try:
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     import numpy as np
+    from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
     from matplotlib.collections import PolyCollection
 except ImportError as error:
     sys.exit(f"plot.py: {error}; on Debian: apt-get install python3-h5py python3-matplotlib, and use /usr/bin/python3")
 
+from particle_boxes import boxes, middle_layer, particle_sizes
 from plot_style import EXACT, OURS
 
+AXES = {3: ["x", "y", "z"], 6: ["xx", "yy", "zz", "xy", "yz", "xz"]}
+UNITS = {"cauchy_stress": "Pa", "recovered_stress": "Pa", "displacement": "m", "velocity": "m/s", "mass": "kg"}
 
-class Frame:
-    """One frame: points, fields, and which scene it is of."""
 
-    def __init__(self, directory, step):
+class Run:
+    """A results directory: its summary, {} where the run is not at its end, and its frames."""
+
+    def __init__(self, directory):
         self.directory = pathlib.Path(directory)
         indices = sorted(i for i in self.directory.glob("*.hdf.series") if not i.name.endswith("_grid.hdf.series"))
         if len(indices) != 1:
             sys.exit(f"plot.py: {directory} must hold the results of one run; it has {len(indices)} frame indices")
-        self.name = indices[0].name[: -len(".hdf.series")]
-        files = json.loads(indices[0].read_text())["files"]
-        if step is not None:
-            files = [f for f in files if int(f["name"].rsplit("_", 1)[1][:-4]) == step]
-            if not files:
-                sys.exit(f"plot.py: {indices[0]} lists no frame of step {step}")
-        self.time = files[-1]["time"]
-        self.file_name = files[-1]["name"]
-        with h5py.File(self.directory / self.file_name) as file:
-            self.position = file["VTKHDF/Points"][()]
-            self.fields = {name: data[()] for name, data in file["VTKHDF/PointData"].items()}
+        self.index = indices[0]
+        self.name = self.index.name[: -len(".hdf.series")]
+        self.files = json.loads(self.index.read_text())["files"]
+        if not self.files:
+            sys.exit(f"plot.py: {self.index} lists no frame")
         summary = self.directory / "summary.json"
         self.summary = json.loads(summary.read_text()) if summary.exists() else {}
+
+    def step_of(self, file):
+        return int(file["name"].rsplit("_", 1)[1][:-4])
+
+    def frame(self, step=None, number=None):
+        """The frame of a step, or the one of a number; the last that is whole where none is asked for."""
+        if step is not None:
+            found = [f for f in self.files if self.step_of(f) == step]
+            if not found:
+                steps = ", ".join(str(self.step_of(f)) for f in self.files)
+                sys.exit(f"plot.py: {self.index} lists no frame of step {step} (of steps {steps})")
+            return Frame(self, found[-1])
+        if number is not None:
+            if not -len(self.files) <= number < len(self.files):
+                sys.exit(f"plot.py: {self.index} lists {len(self.files)} frames, 0 to {len(self.files) - 1}; there is no {number}")
+            return Frame(self, self.files[number])
+        for file in reversed(self.files):
+            try:
+                frame = Frame(self, file)
+            except (OSError, KeyError) as error:
+                print(f"plot.py: {file['name']} is not whole ({error})", file=sys.stderr)
+                continue
+            if not self.summary:
+                print(f"plot.py: {self.directory} has no summary.json: the run is not at its end; this is step {frame.step}, the "
+                      "last frame that is whole" + ("" if frame.step else ", the state it began in (for more: output.every)"),
+                      file=sys.stderr)
+            return frame
+        sys.exit(f"plot.py: {self.directory} has no frame that is whole")
+
+
+class Frame:
+    """One frame: points, fields, and which run it is of."""
+
+    def __init__(self, run, file):
+        self.run, self.directory, self.name, self.summary = run, run.directory, run.name, run.summary
+        self.time, self.step = file["time"], run.step_of(file)
+        with h5py.File(self.directory / file["name"]) as data:
+            self.position = data["VTKHDF/Points"][()]
+            self.fields = {name: field[()] for name, field in data["VTKHDF/PointData"].items()}
         spread = np.ptp(self.position, axis=0)
         self.dimension = self.summary.get("dimension") or (1 if not spread[1:].any() else 2 if not spread[2] else 3)
 
     def has(self, *names):
         return all(name in self.fields for name in names)
+
+    def needs(self, *names):
+        """Ends the program unless the frame has what drawing takes, and these fields."""
+        lacking = [name for name in ("displacement", "volume", *names) if name not in self.fields]
+        if lacking:
+            sys.exit(f"plot.py: the frames lack {', '.join(lacking)}; see output.fields of the scene")
+
+    def title(self):
+        state = "" if self.summary else ", run not at its end"
+        return f"{self.name}: t = {self.time:.4g} s, {len(self.position)} particles{state}"
+
+    @functools.cached_property
+    def start(self):
+        return (self.position - self.fields["displacement"])[:, : self.dimension]
+
+    @functools.cached_property
+    def sizes(self):
+        """Edges of the particles' boxes."""
+        return particle_sizes(self.start, self.fields["volume"], self.fields.get("mass"))
+
+    def choices(self):
+        """What --field can name."""
+        names = ["pressure", "mean_stress", "von_mises"] if self.has("cauchy_stress") else []
+        for name, values in self.fields.items():
+            if values.ndim == 1 or values.shape[1] == 3:
+                names.append(name)
+            if values.ndim > 1:
+                names += [f"{name}_{axes}" for axes in AXES.get(values.shape[1], [])]
+        return names
+
+    def field(self, name):
+        """(values, unit) of a field by the name it has for --field."""
+        if name not in self.choices():
+            sys.exit(f"plot.py: the frames have no field '{name}'; there are {', '.join(self.choices())}")
+        if name in ("pressure", "mean_stress", "von_mises"):
+            stress = self.fields["cauchy_stress"]
+            mean = stress[:, :3].mean(axis=1)
+            return {"pressure": -mean, "mean_stress": mean}[name] if name != "von_mises" else von_mises(stress), "Pa"
+        volume = {1: "m", 2: "m²", 3: "m³"}[self.dimension]
+        whole = name if name in self.fields else name.rpartition("_")[0]
+        unit = volume if whole == "volume" else UNITS.get(whole.removeprefix("exact_"), "")
+        values = self.fields[whole]
+        if name == whole:
+            return values.astype(float) if values.ndim == 1 else np.linalg.norm(values, axis=1), unit
+        return values[:, AXES[values.shape[1]].index(name.rpartition("_")[2])], unit
 
 
 def scaled(values, unit):
@@ -105,51 +197,60 @@ def compared_quantities(frame):
             *[(rf"$u_{'xyz'[i]}$", "m", u[:, i], None, None) for i in range(frame.dimension)]]
 
 
-def particle_sizes(frame):
-    """Edge lengths of the particles: the lattice's intervals where they lie on one, a cube of the same volume otherwise."""
-    volume, d = frame.fields["volume"], frame.dimension
-    start = (frame.position - frame.fields["displacement"])[:, :d]
-    intervals = []
-    for x in start.T:
-        places = np.unique(np.round(x / max(np.ptp(x), 1e-300), 9)) * max(np.ptp(x), 1e-300)
-        intervals.append(np.diff(places).min() if len(places) > 1 else np.nan)
-    if np.isfinite(intervals).all() and abs(np.prod(intervals) / np.median(volume) - 1) < 0.05:
-        return np.tile(intervals, (len(volume), 1))
-    return np.tile(volume[:, None] ** (1 / d), (1, d))
+def plane_of(frame):
+    """The plane drawn, in 3D across the thinnest direction: which particles meet it, and the axes in it."""
+    if frame.dimension < 3:
+        return np.ones(len(frame.position), bool), [0, 1]
+    thin = int(np.argmin(np.ptp(frame.position, axis=0)))
+    amount = frame.fields.get("mass", frame.fields["volume"])
+    return middle_layer(frame.start, frame.sizes, amount, thin), [i for i in range(3) if i != thin]
 
 
 def rectangles(frame, keep, axes):
     """A rectangle per particle, of its size in the plane drawn."""
-    half = 0.5 * particle_sizes(frame)[keep][:, axes]
-    corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
-    return frame.position[keep][:, axes][:, None, :] + half[:, None, :] * corners[None]
+    return boxes(frame.position[keep], frame.sizes[keep], axes)
 
 
-def draw_fields(frame):
+def limits_of(values):
+    """Ends of a range of colours."""
+    low, high = np.percentile(values, [0.2, 99.8])
+    if high - low <= 1e-6 * max(abs(low), abs(high)):
+        return low - 0.5 * abs(low), high + 0.5 * abs(high)
+    return low, high
+
+
+def panel_size(aspect, flat, alone=False):
+    """Inches for a panel of this height over its width. Flat ones have their colour bars below, not beside; `alone`: nothing is
+    drawn beside them."""
+    if not flat:
+        return 3.1, 0.72 * 3.1 * aspect + 0.5
+    width = 6.5 if alone else 4.2
+    return width, 0.88 * width * aspect + 1.5
+
+
+def drawn_quantities(frame, field):
+    """What a picture shows: the field that was asked for, or what is compared."""
+    if field is None:
+        return compared_quantities(frame)
+    values, unit = frame.field(field)
+    return [(field, unit, values, None, None)]
+
+
+def draw_fields(frame, field=None):
     """A row per source (exact, this run, difference), a column per quantity."""
-    keep = np.ones(len(frame.position), bool)
-    axes, names = [0, 1], "xy"
-    if frame.dimension == 3:  # the layer of particles nearest to the middle of the thinnest direction
-        thin = int(np.argmin(np.ptp(frame.position, axis=0)))
-        z = frame.position[:, thin]
-        sizes = particle_sizes(frame)
-        volume = frame.fields["volume"]
-        whole = np.flatnonzero(volume > 0.99 * volume.max())  # what a surface cuts has a place of its own
-        middle = 0.5 * (z.min() + z.max())
-        level = z[whole[np.argmin(np.abs(z[whole] - middle))]]
-        keep = np.abs(z - level) < 0.499 * sizes[:, thin]
-        axes = [i for i in range(3) if i != thin]
-        names = "".join("xyz"[i] for i in axes)
-    quantities = compared_quantities(frame)
+    keep, axes = plane_of(frame)
+    names = "".join("xyz"[i] for i in axes)
+    quantities = drawn_quantities(frame, field)
     rows = ["exact", "this run", "difference"] if quantities[0][3] is not None else ["this run"]
     polygons = rectangles(frame, keep, axes)
     low, high = polygons.min(axis=(0, 1)), polygons.max(axis=(0, 1))
     aspect = (high[1] - low[1]) / (high[0] - low[0])
-    flat = aspect < 0.6  # colour bars below, not beside
-    width = 4.2 if flat else 3.1
-    height = width * aspect + 1.15 if flat else 0.72 * width * aspect + 0.5
-    figure, panels = plt.subplots(len(rows), len(quantities), squeeze=False, layout="constrained",
-                                  figsize=(width * len(quantities), height * len(rows)))
+    flat = aspect < 0.6
+    stacked = flat and len(rows) == 1  # one below the other, being wide
+    width, height = panel_size(aspect, flat, stacked)
+    shape = (len(quantities), 1) if stacked else (len(rows), len(quantities))
+    figure, panels = plt.subplots(*shape, squeeze=False, layout="constrained",
+                                  figsize=(width * shape[1], height * shape[0] + 0.3))
     for column, (label, unit, ours, exact, error) in enumerate(quantities):
         reference = ours if exact is None else exact
         factor, unit = scaled(reference[keep], unit)
@@ -162,10 +263,8 @@ def draw_fields(frame):
                 bound = np.percentile(np.abs(values), 99.5) or 1
                 limits, colours = (-bound, bound), "RdBu_r"
             else:
-                limits, colours = np.percentile(reference[keep] / factor, [0.2, 99.8]), "viridis"
-                if limits[1] - limits[0] <= 1e-6 * np.abs(limits).max():
-                    limits = (limits[0] - 0.5 * abs(limits[0]), limits[1] + 0.5 * abs(limits[1]))
-            panel = panels[row][column]
+                limits, colours = limits_of(reference[keep] / factor), "viridis"
+            panel = panels[column][0] if stacked else panels[row][column]
             panel.add_collection(PolyCollection(polygons, array=values, cmap=colours, clim=limits, edgecolors="face",
                                                 linewidths=0.4, rasterized=True))
             panel.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal", xlabel=f"{names[0]} (m)",
@@ -175,19 +274,19 @@ def draw_fields(frame):
                 text += f"  ({error} = {errors_of(frame)[error]:.2e})"
             panel.set_title(text)
             if flat:
-                panel.yaxis.set_major_locator(plt.MaxNLocator(2))
+                panel.yaxis.set_major_locator(plt.MaxNLocator(2 if aspect > 0.15 else 1))
             place = dict(location="bottom", aspect=40) if flat else dict(shrink=0.9)
             figure.colorbar(panel.collections[0], ax=panel, label=unit, pad=0.02, **place)
-    figure.suptitle(f"{frame.name}: t = {frame.time:.4g} s, {len(frame.position)} particles")
+    figure.suptitle(frame.title())
     return figure
 
 
-def draw_profiles(frame):
+def draw_profiles(frame, field=None):
     """Every quantity over the coordinate it varies along: radius for the cylinder, x otherwise."""
     x, y, _ = frame.position.T
     radial = "e_rr" in errors_of(frame)
     along, name = (np.hypot(x, y), "r") if radial else (x, "x")
-    quantities = compared_quantities(frame)
+    quantities = drawn_quantities(frame, field)
     exact_known = quantities[0][3] is not None
     rows = 2 if exact_known else 1
     figure, panels = plt.subplots(rows, len(quantities), squeeze=False, layout="constrained", sharex="col",
@@ -220,27 +319,89 @@ def draw_profiles(frame):
                 below.set_title(f"{error} = {errors_of(frame)[error]:.3e}", fontsize=8)
         else:
             panel.set_xlabel(f"{name} (m)")
-    figure.suptitle(f"{frame.name}: t = {frame.time:.4g} s, {len(frame.position)} particles")
+    figure.suptitle(frame.title())
     return figure
+
+
+def animate(run, field):
+    """A film of a field over all frames that are whole, with the same colours in all of them."""
+    frames = []
+    for file in run.files:
+        try:
+            frames.append(Frame(run, file))
+        except (OSError, KeyError) as error:
+            print(f"plot.py: {file['name']} is left out ({error})", file=sys.stderr)
+    if len(frames) < 2:
+        sys.exit(f"plot.py: an animation needs two frames; {run.index} has {len(frames)} that are whole (for more: output.every)")
+    flat = frames[0].dimension == 1
+    places, values = [], []
+    for frame in frames:
+        frame.needs()
+        of_all, unit = frame.field(field)
+        keep, axes = plane_of(frame)
+        values.append(of_all[keep])
+        places.append(frame.position[:, 0] if flat else rectangles(frame, keep, axes))
+    factor, unit = scaled(np.concatenate(values), unit)
+    values = [v / factor for v in values]
+    limits = limits_of(np.concatenate(values))
+    flattened = np.concatenate([p.reshape(-1, p.shape[-1]) if p.ndim > 1 else p[:, None] for p in places])
+    low, high = flattened.min(axis=0), flattened.max(axis=0)
+    label = f"{field} ({unit})" if unit else field
+    if flat:
+        figure, panel = plt.subplots(figsize=(4.6, 3), layout="constrained")
+        marks, = panel.plot([], [], ".", color=OURS)
+        room = 0.05 * (limits[1] - limits[0])
+        panel.set(xlim=(low[0], high[0]), ylim=(limits[0] - room, limits[1] + room), xlabel="x (m)", ylabel=label)
+    else:
+        aspect = (high[1] - low[1]) / (high[0] - low[0])
+        wide = aspect < 0.6
+        figure, panel = plt.subplots(figsize=panel_size(aspect, wide, True), layout="constrained")
+        marks = PolyCollection([], cmap="viridis", clim=limits, edgecolors="face", linewidths=0.4)
+        panel.add_collection(marks)
+        panel.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal", xlabel=f"{'xyz'[axes[0]]} (m)",
+                  ylabel=f"{'xyz'[axes[1]]} (m)")
+        figure.colorbar(marks, ax=panel, label=label, **(dict(location="bottom", aspect=40) if wide else {}))
+
+    def show(number):
+        if flat:
+            marks.set_data(places[number], values[number])
+        else:
+            marks.set_verts(places[number])
+            marks.set_array(values[number])
+        panel.set_title(f"t = {frames[number].time:.4g} s, step {frames[number].step}", fontsize=9)
+
+    film = FuncAnimation(figure, show, frames=len(frames))
+    for ending, writer in [("gif", PillowWriter(fps=12))] + ([("mp4", FFMpegWriter(fps=12))] if shutil.which("ffmpeg") else []):
+        path = run.directory / f"{run.name}_{field}.{ending}"
+        film.save(path, writer=writer, dpi=110)
+        print(path)
+    plt.close(figure)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("directory", help="results directory of one run")
-    parser.add_argument("--step", type=int, help="step of the frame to draw (default: the last)")
+    which = parser.add_mutually_exclusive_group()
+    which.add_argument("--step", type=int, help="step of the frame to draw (default: the last frame)")
+    which.add_argument("--frame", type=int, help="number of the frame to draw, from 0; -1 is the last")
+    which.add_argument("--animation", action="store_true", help="a film of all frames (default field: von_mises)")
+    parser.add_argument("--field", help="field to draw, such as von_mises, pressure or displacement_x")
     parser.add_argument("--dpi", type=int, default=200, help="dots per inch of the pictures (default: 200)")
     arguments = parser.parse_args()
-    frame = Frame(arguments.directory, arguments.step)
-    if not frame.has("cauchy_stress", "displacement", "volume"):
-        sys.exit("plot.py: the frames lack cauchy_stress, displacement or volume; see output.fields of the scene")
+    run = Run(arguments.directory)
+    if arguments.animation:
+        animate(run, arguments.field or "von_mises")
+        return
+    frame = run.frame(arguments.step, arguments.frame)
+    frame.needs(*([] if arguments.field else ["cauchy_stress"]))
     drawings = {}
-    if frame.dimension == 1 or errors_of(frame):
+    if frame.dimension == 1 or (errors_of(frame) and not arguments.field):
         drawings["profiles"] = draw_profiles
     if frame.dimension > 1:
         drawings["fields"] = draw_fields
     for kind, draw in drawings.items():
-        path = frame.directory / f"{frame.name}_{kind}.png"
-        figure = draw(frame)
+        path = frame.directory / f"{frame.name}_{arguments.field or kind}.png"
+        figure = draw(frame, arguments.field)
         figure.savefig(path, dpi=arguments.dpi, bbox_inches="tight")
         plt.close(figure)
         print(path)

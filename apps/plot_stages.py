@@ -26,13 +26,14 @@ except ImportError as error:
     sys.exit(f"plot_stages.py: {error}; on Debian: apt-get install python3-h5py python3-matplotlib, and use /usr/bin/python3")
 
 import plot_style  # noqa: F401
+from particle_boxes import boxes, middle_layer
 from stage_frames import StagedRun
 
 MAP = "inferno_r"
 
 
 class Slice:
-    """The layer of particles next to the middle, as squares in mm."""
+    """The layer of particles next to the middle, as rectangles in mm."""
 
     def __init__(self, run, panel, highest):
         self.run, self.panel = run, panel
@@ -44,15 +45,14 @@ class Slice:
         panel.add_collection(self.squares)
 
     def show(self, step):
-        x, start, strain = self.run.read(step)
-        layers = np.unique(np.round(start[:, 2], 9))
-        chosen = np.abs(start[:, 2] - layers[len(layers) // 2]) < 1e-8
-        x, strain = 1e3 * x[chosen, :2], strain[chosen]
-        spacing = np.diff(np.unique(np.round(1e3 * start[chosen, 0], 6))).min()
-        corner = spacing / 2 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
-        self.squares.set_verts(x[:, None, :] + corner)
-        self.squares.set_array(strain)
-        return x
+        state = self.run.read(step)
+        chosen = np.ones(len(state.x), bool)
+        if self.run.dimension == 3:
+            chosen = middle_layer(state.start, state.sizes, state.mass, 2)
+        corners = 1e3 * boxes(state.x[chosen], state.sizes[chosen], [0, 1])
+        self.squares.set_verts(corners)
+        self.squares.set_array(state.strain[chosen])
+        return corners
 
 
 def title_of(number, stage, outcome, last):

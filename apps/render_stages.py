@@ -21,7 +21,8 @@ try:
 except ImportError as error:
     sys.exit(f"render_stages.py: {error}; on Debian: apt-get install python3-h5py python3-vtk9, and use /usr/bin/python3")
 
-from stage_frames import StagedRun
+from particle_boxes import whole_particles
+from stage_frames import StagedRun, State
 
 
 def be_seen():
@@ -34,10 +35,11 @@ def be_seen():
     os.execvp("xvfb-run", ["xvfb-run", "-a", "-s", "-screen 0 1600x1200x24", sys.executable, *sys.argv])
 
 
-def outer_particles(start):
-    """Those with a free place beside them: nothing else can be seen."""
-    spacing = np.diff(np.unique(np.round(start[:, 0], 9))).min()
-    at = np.round((start - start.min(axis=0)) / spacing).astype(int)
+def outer_particles(state):
+    """Those in a box of the lattice with a free one beside it: nothing else can be seen."""
+    whole = whole_particles(state.mass)
+    at = np.round((state.start - state.start[whole][0]) / state.sizes[whole][0]).astype(int)
+    at -= at.min(axis=0)
     box = np.zeros(at.max(axis=0) + 3, dtype=bool)
     box[tuple((at + 1).T)] = True
     inside = np.ones(len(at), dtype=bool)
@@ -46,24 +48,25 @@ def outer_particles(start):
             neighbour = at + 1
             neighbour[:, axis] += side - 1
             inside &= box[tuple(neighbour.T)]
-    return ~inside, spacing
+    return ~inside
 
 
-def cubes(x, strain, spacing, colours):
+def cubes(state, seen, colours):
     points = vtk.vtkPoints()
-    points.SetData(numpy_to_vtk(1e3 * x, deep=True))
+    points.SetData(numpy_to_vtk(1e3 * state.x[seen], deep=True))
     cloud = vtk.vtkPolyData()
     cloud.SetPoints(points)
-    values = numpy_to_vtk(strain, deep=True)
+    values = numpy_to_vtk(state.strain[seen], deep=True)
     values.SetName("strain")
     cloud.GetPointData().SetScalars(values)
-    cube = vtk.vtkCubeSource()
-    for set_length in (cube.SetXLength, cube.SetYLength, cube.SetZLength):
-        set_length(1.02e3 * spacing)
+    edges = numpy_to_vtk(1.02e3 * state.sizes[seen], deep=True)
+    edges.SetName("edges")
+    cloud.GetPointData().AddArray(edges)
     mapper = vtk.vtkGlyph3DMapper()
     mapper.SetInputData(cloud)
-    mapper.SetSourceConnection(cube.GetOutputPort())
-    mapper.ScalingOff()
+    mapper.SetSourceConnection(vtk.vtkCubeSource().GetOutputPort())
+    mapper.SetScaleArray("edges")
+    mapper.SetScaleModeToScaleByVectorComponents()
     mapper.SetLookupTable(colours)
     mapper.SetScalarRange(*colours.GetRange())
     actor = vtk.vtkActor()
@@ -147,14 +150,13 @@ def main():
     window.SetMultiSamples(4)
     window.SetSize(520 * len(stages), 640)
     for place, (number, stage) in enumerate(stages):
-        x, start, strain = run.read(stage["last_step"])
-        kept = ~((start[:, 0] > 0) & (start[:, 1] > 0))  # the quarter towards the eye is cut out
-        x, start, strain = x[kept], start[kept], strain[kept]
-        seen, spacing = outer_particles(start)
+        state = run.read(stage["last_step"])
+        kept = ~((state.start[:, 0] > 0) & (state.start[:, 1] > 0))  # the quarter towards the eye is cut out
+        state = State(*(field[kept] for field in state))
         last = number == len(run.stages) and run.outcome == "collapse"
         title = f"{number}: total failure" if last else f"{number}: {stage['rows']:.1f} rows beyond the threshold"
         panel(window, (place / len(stages), 0, (place + 1) / len(stages), 1), title,
-              cubes(x[seen], strain[seen], spacing, colours), colours if place == 0 else None)
+              cubes(state, outer_particles(state), colours), colours if place == 0 else None)
     window.Render()
     picture = vtk.vtkWindowToImageFilter()
     picture.SetInput(window)

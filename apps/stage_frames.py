@@ -1,12 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The frames of a run that removes particles in stages, for the scripts that draw them."""
+import collections
 import json
 import pathlib
 import sys
 
 import numpy as np
 
+from particle_boxes import particle_sizes
+
 FIELD = "equivalent_plastic_strain"
+
+# Of every particle: place, place at the start, equivalent plastic strain, edges of its box, mass.
+State = collections.namedtuple("State", "x start strain sizes mass")
 
 
 class StagedRun:
@@ -35,17 +41,23 @@ class StagedRun:
         return next((n for n, s in enumerate(self.stages, 1) if step <= s["last_step"]), len(self.stages))
 
     def read(self, step):
-        """Positions and equivalent plastic strain, a quarter or a half made whole by mirror images."""
+        """The state at a step, a quarter or a half made whole by mirror images."""
         import h5py  # late: who only wants the stages needs no HDF5
 
         with h5py.File(self.directory / f"{self.name}_{step:06d}.hdf") as file:
             data = file["VTKHDF/PointData"]
-            if FIELD not in data or "displacement" not in data:
-                self.fail(f"has frames without {FIELD} or displacement (output.fields)")
-            x, strain, start = file["VTKHDF/Points"][()], data[FIELD][()], file["VTKHDF/Points"][()] - data["displacement"][()]
+            needed = [FIELD, "displacement", "volume", "mass"]
+            lacking = [name for name in needed if name not in data]
+            if lacking:
+                self.fail(f"has frames without {', '.join(lacking)} (output.fields)")
+            x, (strain, moved, volume, mass) = file["VTKHDF/Points"][()], (data[name][()] for name in needed)
+        start = x - moved
+        sizes = np.ones_like(x)
+        sizes[:, : self.dimension] = particle_sizes(start[:, : self.dimension], volume, mass)
         for axis in (0, 1):
             if start[:, axis].min() > 0:
                 mirror = np.ones(3)
                 mirror[axis] = -1
-                x, start, strain = np.vstack([x, x * mirror]), np.vstack([start, start * mirror]), np.tile(strain, 2)
-        return x, start, strain
+                x, start = np.vstack([x, x * mirror]), np.vstack([start, start * mirror])
+                strain, mass, sizes = np.tile(strain, 2), np.tile(mass, 2), np.tile(sizes, (2, 1))
+        return State(x, start, strain, sizes, mass)
