@@ -38,7 +38,16 @@ QUANTITIES.update({f"{e}_cell_mean": f"{name}, cell means" for e, name in list(Q
 
 
 QUANTITIES.update({"hoop_ratio": "mean hoop stress over the exact one", "net_force_share": "net force / load",
-                   "net_torque_share": "net torque / (load x half width)"})
+                   "net_torque_share": "net torque / (load x half width)", "largest_displacement": "largest displacement",
+                   "strain_energy": "strain energy", "kinetic_energy": "kinetic energy",
+                   "largest_von_mises": "largest von Mises stress", "largest_principal_stress": "largest principal stress",
+                   "smallest_principal_stress": "smallest principal stress",
+                   "largest_equivalent_plastic_strain": "largest plastic strain"})
+# Of figures that have one; in 2D forces and energies are per metre of thickness.
+UNITS = {"largest_displacement": "m", "strain_energy": "J", "kinetic_energy": "J", "largest_von_mises": "Pa",
+         "largest_principal_stress": "Pa", "smallest_principal_stress": "Pa", "time": "s", "load": "N"}
+UNITS.update({f"{kind}_{what}_{axis}": unit for kind in ("net", "exact") for what, unit in (("force", "N"), ("torque", "N m"))
+              for axis in "xyz"})
 FLOOR = 1e-17  # where a distribution on a logarithmic axis has its zeros
 
 
@@ -63,25 +72,31 @@ class Study:
         self.chart = self.about["chart"]
         with self.path.open(newline="") as file:
             self.lines = [line for line in csv.DictReader(file) if line["figure"] in self.chart["figures"]]
-        drawn = {line["series"] for line in self.lines if self.drawn(line["value"])}
+        self.logarithmic = {figure: self.log(figure) for figure in self.chart["figures"]}
+        drawn = {line["series"] for line in self.lines if self.drawn(line)}
         self.series = [name for name in self.about["series"] if name in drawn]
-        self.errors = [e for e in self.chart["figures"] if any(l["figure"] == e and self.drawn(l["value"]) for l in self.lines)]
+        self.errors = [e for e in self.chart["figures"] if any(l["figure"] == e and self.drawn(l) for l in self.lines)]
         self.labels = list(dict.fromkeys(line["case"] for line in self.lines)) if self.about["axis"]["labels"] else []
 
-    def value(self, text):
-        """A number that can stand on the charts' axis of figures."""
-        return number(text) if self.chart["log"] else finite(text)
+    def log(self, figure):
+        """Whether a figure has a logarithmic scale: where the chart asks for it and no value is negative, nor all of them 0."""
+        values = [finite(l["value"]) for l in self.lines if l["figure"] == figure and finite(l["value"]) is not None]
+        return self.chart["log"] and all(v >= 0 for v in values) and any(values)
 
-    def drawn(self, text):
-        """Whether a number is in the charts; a distribution has its zeros at the floor."""
-        return (finite if self.chart["distribution"] else self.value)(text) is not None
+    def value(self, line, column="value"):
+        """A number that can stand on the axis of the line's figure."""
+        return (number if self.logarithmic[line["figure"]] else finite)(line[column])
+
+    def drawn(self, line):
+        """Whether a line is in the charts; a distribution has its zeros at the floor."""
+        return (finite(line["value"]) if self.chart["distribution"] else self.value(line)) is not None
 
     def place(self, line):
         return self.labels.index(line["case"]) if self.labels else float(line["case"])
 
     def of(self, series, error):
         """The lines of a series for an error that have a value, along the axis."""
-        found = [l for l in self.lines if l["series"] == series and l["figure"] == error and self.drawn(l["value"])]
+        found = [l for l in self.lines if l["series"] == series and l["figure"] == error and self.drawn(l)]
         return sorted(found, key=self.place)
 
     def style(self, series):
@@ -122,10 +137,12 @@ def other_marks(study):
     handles = []
     grey = dict(color="0.35", linestyle="none", markerfacecolor="none")
     for column, marker, size in (("expected", "s", 8), ("published", "D", 6)):
-        if any(study.value(line[column]) is not None for line in study.lines):
-            names = dict.fromkeys(l["source"] or "expected" for l in study.lines if study.value(l["expected"]) is not None)
+        if any(study.value(line, column) is not None for line in study.lines):
+            names = dict.fromkeys(l["source"] or "expected" for l in study.lines if study.value(l, "expected") is not None)
             name = ", ".join(names) if column == "expected" else study.about["published_source"]
             handles.append(Line2D([], [], marker=marker, markersize=size, label=name, **grey))
+    if any(finite(line["extrapolated"]) is not None for line in study.lines):
+        handles.append(Line2D([], [], color="0.35", linestyle="--", linewidth=0.9, label="extrapolated"))
     if any(line["verdict"] == "fail" for line in study.lines):
         handles.append(Line2D([], [], marker="o", markersize=12, label="misses its tolerance", **{**grey, "color": MISSED}))
     return handles
@@ -157,20 +174,24 @@ def draw_errors(study):
             lines = study.of(series, error)
             shift = 0.7 * ((k + 0.5) / len(study.series) - 0.5) if study.labels else 0
             for line in lines:
-                x, y = study.place(line) + shift, study.value(line["value"])
+                x, y = study.place(line) + shift, study.value(line)
                 points.append((x, y))
                 for column, mark, size in (("expected", "s", 8), ("published", "D", 6)):
-                    if study.value(line[column]) is not None:
-                        points.append((x, study.value(line[column])))
-                        panel.plot(x, study.value(line[column]), mark, color=colour, markerfacecolor="none", markersize=size,
+                    if study.value(line, column) is not None:
+                        points.append((x, study.value(line, column)))
+                        panel.plot(x, study.value(line, column), mark, color=colour, markerfacecolor="none", markersize=size,
                                    markeredgewidth=0.8, zorder=4)
                 if line["verdict"] == "fail":
                     panel.plot(x, y, "o", color=MISSED, markerfacecolor="none", markersize=12, markeredgewidth=1.2, zorder=5)
-            panel.plot([study.place(l) + shift for l in lines], [study.value(l["value"]) for l in lines], color=colour,
+            panel.plot([study.place(l) + shift for l in lines], [study.value(l) for l in lines], color=colour,
                        marker=marker, markersize=4, linewidth=1.2, linestyle="none" if study.labels else "-", zorder=3)
-        if study.chart["log"]:
+            found = [study.value(l, "extrapolated") for l in lines if study.value(l, "extrapolated") is not None]
+            if found:  # from the last three cases
+                panel.axhline(found[-1], color=colour, linestyle="--", linewidth=0.9, zorder=2)
+        log = study.logarithmic[error]
+        if log:
             panel.set_yscale("log")
-        panel.set(title=QUANTITIES.get(error, ""), ylabel=f"{error} (-)")
+        panel.set(title=QUANTITIES.get(error, ""), ylabel=f"{error} ({UNITS.get(error, '-')})")
         panel.grid(axis="y", color="0.92", linewidth=0.6)
         panel.set_axisbelow(True)
         if study.labels:
@@ -183,7 +204,7 @@ def draw_errors(study):
             panel.set_xlabel(axis["name"] + (f" ({axis['unit']})" if axis["unit"] else ""))
             if axis["log"]:
                 panel.set_xscale("log")
-                if study.chart["log"]:
+                if log and error in study.about["errors"]:
                     draw_slopes(panel, points)
             places = {line["case"]: float(line["case"]) for line in study.lines}
             if len(places) <= 7:
@@ -195,9 +216,10 @@ def draw_errors(study):
             span = max(places.values()) - min(places.values())
             if not axis["log"] and span > 0:
                 panel.set_xlim(min(places.values()) - 0.06 * span, max(places.values()) + 0.06 * span)
-        if study.chart["log"]:
+        if log:
             readable(panel.yaxis)
-    slopes = [Line2D([], [], color="0.6", linewidth=0.9, label="slopes 1 and 2")] if axis["log"] and study.chart["log"] else []
+    sloping = axis["log"] and any(study.logarithmic[e] and e in study.about["errors"] for e in study.errors)
+    slopes = [Line2D([], [], color="0.6", linewidth=0.9, label="slopes 1 and 2")] if sloping else []
     legend_below(figure, study, other_marks(study) + slopes)
     return figure
 
@@ -208,7 +230,8 @@ def draw_distribution(study):
     figure, panels = plt.subplots(1, len(study.errors), squeeze=False, sharex=True, sharey=True, layout="constrained",
                                   figsize=(width, 2.9))
     figure.suptitle(study.about["title"] or study.about["study"])
-    log = study.chart["log"]
+    log = any(study.logarithmic[e] for e in study.errors) and all(
+        finite(l["value"]) >= 0 for l in study.lines if finite(l["value"]) is not None)
 
     def look(series):
         colour, _ = study.style(series)
@@ -229,7 +252,7 @@ def draw_distribution(study):
                        **look(series))
         if log:
             panel.set_xscale("log")
-        panel.set_xlabel(f"{QUANTITIES.get(error, error)} (-)")
+        panel.set_xlabel(f"{QUANTITIES.get(error, error)} ({UNITS.get(error, '-')})")
     panels[0][0].set_ylabel("cases")
     strip_below(figure, [Patch(**look(series), label=series) for series in study.series])
     return figure

@@ -56,6 +56,7 @@ void take_state(RunFigures& figures, const Scene& scene, Simulation& simulation)
   const auto comparison = compare_with_exact(scene, *read_particles(scene, simulation));
   figures.errors = comparison.errors;
   figures.compared = comparison.figures;
+  figures.state = state_figures(scene, *simulation.read_particles());
   figures.cut = simulation.cut_volume();
   figures.moment_fit = simulation.moment_fit();
   figures.particles = simulation.particle_count();

@@ -67,10 +67,15 @@ std::vector<std::pair<std::string, double>> named_figures(const Scene& scene, co
     const auto staged = stage_figures(f.stages, scene.removal->max_stages, scene.removal->hole.has_value());
     named.insert(named.end(), staged.begin(), staged.end());
   }
-  for (size_t c = 0; c < static_cast<size_t>(scene.dimension); ++c)
-    for (const auto& [name, force] :
-         {std::pair("net_force_", &f.balance.net_force), std::pair("exact_force_", &f.balance.exact_force)})
-      named.emplace_back(std::string(name) + "xyz"[c], (*force)[c]);
+  const auto d = static_cast<size_t>(scene.dimension);
+  const auto add = [&](const std::string& name, const Point& vector, size_t first, size_t last) {
+    for (size_t c = first; c < last; ++c) named.emplace_back(name + "_" + "xyz"[c], vector[c]);
+  };
+  add("net_force", f.balance.net_force, 0, d);
+  add("exact_force", f.balance.exact_force, 0, d);
+  add("net_torque", f.balance.net_torque, d == 3 ? 0 : 2, d == 1 ? 2 : 3);
+  add("exact_torque", f.balance.exact_torque, d == 3 ? 0 : 2, d == 1 ? 2 : 3);
+  for (const auto& figure : vsb::app::named(f.state, scene)) named.push_back(figure);
   if (f.solution == Solution::balance) {
     named.emplace_back("load", f.share.load);
     named.emplace_back("net_force_share", f.share.net_force);
@@ -86,6 +91,24 @@ std::vector<std::string> figure_names(const Scene& scene, Solution solution) {
   figures.solution = solution;
   for (const auto& [name, value] : named_figures(scene, figures)) names.push_back(name);
   return names;
+}
+
+std::vector<std::string> default_figures(const Scene& scene, Solution solution) {
+  auto names = error_names(scene);
+  if (names.empty())
+    names = solution == Solution::balance
+                ? std::vector<std::string>{"net_force_share"}
+                : std::vector<std::string>{"largest_displacement", "strain_energy", "largest_von_mises"};
+  return names;
+}
+
+bool is_count(const std::string& figure) {
+  static const char* const beginnings[] = {"particles", "boundary_nodes", "steps",        "iterations",
+                                           "time",      "force_ratio",    "energy_ratio", "false_voids",
+                                           "collapsed", "dropped_nodes",  "stage",        "failed",
+                                           "rows_",     "layer_spread_",  "asymmetry_"};
+  return std::any_of(std::begin(beginnings), std::end(beginnings),
+                     [&](const char* beginning) { return figure.rfind(beginning, 0) == 0; });
 }
 
 namespace {
@@ -155,6 +178,8 @@ std::string summary_json(const Scene& scene, const RunFigures& f) {
       {"provenance", provenance},
   };
   if (!f.tractions.empty()) summary.insert("tractions", traction_reports(f));
+  for (const auto& [name, value] : named(f.state, scene))
+    if (std::isfinite(value)) summary.insert(name, value);
   if (f.solution == Solution::balance)
     summary.insert("resultant", toml::table{{"load", f.share.load},
                                             {"net_force_share", f.share.net_force},
@@ -262,6 +287,7 @@ void print_report(const Scene& scene, const RunFigures& f) {
         std::abs(f.outflow.mass_at_start - f.mass - f.outflow.mass_gone) / f.outflow.mass_at_start);
   const auto& b = f.balance;
   fmt::print("force ratio {:.2e}, energy ratio {:.2e}\n", b.force_ratio, b.energy_ratio);
+  if (std::isfinite(f.state.kinetic_energy)) print_state_figures(f.state);
   if (!scene.removal) print_resultant(scene, b, "");  // the surface of the start is there no longer
   for (const auto& t : f.tractions)
     if (t.lost_at >= 0) fmt::print("lost load: {}\n", t.loss);

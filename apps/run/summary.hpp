@@ -11,6 +11,7 @@
 #include "run/simulation.hpp"
 #include "run/solution.hpp"
 #include "run/stage_report.hpp"
+#include "run/state_figures.hpp"
 #include "run/traction_watch.hpp"
 
 namespace vsb::app {
@@ -29,6 +30,7 @@ struct RunFigures {
   MomentFit moment_fit;
   VoidFilterReport void_filter;
   BalanceReport balance;
+  StateFigures state;
   std::vector<TractionReport> tractions;  ///< those on boundary nodes, of an explicit run
   ResultantShare share;                   ///< of a balance alone
   StagesReport stages;                    ///< where particles are removed in stages
@@ -47,6 +49,10 @@ struct RunFigures {
 std::vector<std::pair<std::string, double>> named_figures(const Scene& scene, const RunFigures& figures);
 /// The names that named_figures will give for the scene.
 std::vector<std::string> figure_names(const Scene& scene, Solution solution);
+/// Those that a study shows where a scene has no exact solution to be compared with.
+std::vector<std::string> default_figures(const Scene& scene, Solution solution);
+/// Whether a figure is a count, or says how a run went: nothing that converges as a grid is refined.
+bool is_count(const std::string& figure);
 
 /// Errors, counts, times, resultant, memory and provenance as JSON.
 std::string summary_json(const Scene& scene, const RunFigures& figures);

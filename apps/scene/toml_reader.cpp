@@ -188,6 +188,10 @@ double checked_number(const TableReader& reader, const toml::node& node, const s
   if (!std::isfinite(*value))
     reader.fail(node, key, "must be finite" + (limits.empty() ? "" : " and " + limits));
   if (!range.contains(*value)) reader.fail(node, key, "must be " + limits);
+  if (std::fpclassify(*value) == FP_SUBNORMAL)
+    reader.fail(node, key,
+                fmt::format("is too small to compute with: must be 0 or at least {:.2g} in size",
+                            std::numeric_limits<double>::min()));
   return *value;
 }
 
@@ -330,6 +334,8 @@ std::vector<std::string> TableReader::texts(const std::string& key, const std::v
         fail(item, key,
              "must be one of '" + fmt::format("{}", fmt::join(allowed, "', '")) + "'" +
                  did_you_mean(value, allowed));
+      if (std::find(values.begin(), values.end(), value) != values.end())
+        fail(item, key, "must not name anything twice");
       values.push_back(value);
     }
   } else {
@@ -385,6 +391,11 @@ void TableReader::unknown(const toml::key& key, const toml::node& value,
                                     : fmt::format("{}:{}:{}", source.path ? *source.path : "scene",
                                                   key.source().begin.line, key.source().begin.column),
                   text, path_.empty() ? "" : " in " + path_, suggestion, fmt::join(known, ", ")));
+}
+
+void TableReader::refuse_empty(const std::string& what) const {
+  if (place_ != table_ || !table_->empty()) return;  // an absent table is not written
+  throw SceneError(fmt::format("{}: {} = {{}}: must be {}", location(*table_), path_, what));
 }
 
 void TableReader::finish() const {

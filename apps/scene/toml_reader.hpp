@@ -105,6 +105,10 @@ class TableReader {
   /// The tables of an array of tables, possibly none.
   std::vector<TableReader> tables(const std::string& key);
 
+  /// Throws where the table is written without a key; `what` is what it may have. For tables of which every
+  /// key has a default, but which mean nothing without one.
+  void refuse_empty(const std::string& what) const;
+
   /// Throws for any key that nobody read, suggesting the nearest known one.
   void finish() const;
 

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "run/summary.hpp"
+#include "study/convergence.hpp"
+
 namespace vsb::app {
 
 namespace {
@@ -22,6 +25,31 @@ void judge(StudyLine& line, const Expectation& expectation) {
   // Comparisons with NaN are false: a figure that is no number fails.
   line.passed = line.value && *line.value >= expectation.lowest && *line.value <= expectation.highest &&
                 std::isfinite(*line.value);
+}
+
+/// Rate, difference and extrapolated value, as far as the cases before the last of the records have the
+/// figure.
+void compare_with_before(StudyLine& line, const StudySeries& series,
+                         const std::vector<const CaseRecord*>& records) {
+  const size_t last = records.size() - 1;
+  const auto before = [&](size_t n) {
+    return last >= n ? records[last - n]->figure(line.figure) : std::nullopt;
+  };
+  const auto place = [&](size_t n) { return series.cases[last - n].axis; };
+  const auto previous = before(1);
+  const auto errors = error_names(*series.cases[last].scene);
+  if (!previous || is_count(line.figure)) return;
+  if (std::find(errors.begin(), errors.end(), line.figure) != errors.end()) {
+    line.rate = rate_between(*previous, *line.value, place(1), place(0));
+    return;
+  }
+  line.difference = *line.value - *previous;
+  const auto first = before(2);
+  if (!first) return;
+  const auto found = convergence_of({place(2), place(1), place(0)}, {*first, *previous, *line.value});
+  line.rate = found.rate;
+  line.extrapolated = found.extrapolated;
+  if (!found.note.empty()) line.note += (line.note.empty() ? "" : "; ") + found.note;
 }
 
 /// Of a case that should have failed, or did though it should not.
@@ -44,9 +72,11 @@ std::optional<double> StudyLine::deviation() const {
   return *value / *expectation.value - 1;
 }
 
-std::vector<StudyLine> judge_case(const Study& study, const StudySeries& series, size_t index,
-                                  const CaseRecord& record, const CaseRecord* before) {
+std::vector<StudyLine> judge_case(const Study& study, const StudySeries& series,
+                                  const std::vector<const CaseRecord*>& records) {
+  const size_t index = records.size() - 1;
   const StudyCase& c = series.cases[index];
+  const CaseRecord& record = *records.back();
   std::vector<StudyLine> lines;
   const bool failed = record.state == CaseRecord::State::failed;
   const bool not_static = !failed && !record.message.empty();  // the only message of a case that ended
@@ -54,7 +84,7 @@ std::vector<StudyLine> judge_case(const Study& study, const StudySeries& series,
     lines.push_back(outcome_line(c, record));
   if (!c.expected_failure.empty()) return lines;
 
-  auto names = error_names(*c.scene);
+  auto names = study.chart ? error_names(*c.scene) : default_figures(*c.scene, c.solution);
   const auto add = [&](const std::string& name) {
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   };
@@ -72,9 +102,7 @@ std::vector<StudyLine> judge_case(const Study& study, const StudySeries& series,
     if (expected != c.expect.end()) judge(line, expected->second);
     const auto published = c.published.find(name);
     if (published != c.published.end()) line.published = published->second;
-    const auto previous = before ? before->figure(name) : std::nullopt;
-    if (study.rates && previous && line.value)
-      line.rate = rate_between(*previous, *line.value, series.cases[index - 1].axis, c.axis);
+    if (study.rates && line.value) compare_with_before(line, series, records);
     lines.push_back(line);
   }
   return lines;

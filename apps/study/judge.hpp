@@ -16,7 +16,11 @@ namespace vsb::app {
 struct StudyLine {
   std::string figure;  ///< its name; "outcome" where the case gave none, or should not
   std::optional<double> value;
-  std::optional<double> rate;  ///< against the case before in the series
+  /// Of an error against the case before in the series; of another figure from the differences between this
+  /// case and the two before it, see study/convergence.hpp.
+  std::optional<double> rate;
+  std::optional<double> difference;    ///< from the case before; of figures that are no errors
+  std::optional<double> extrapolated;  ///< to h = 0, from the same three cases as the rate
   Expectation expectation;
   bool judged = false, passed = false;
   std::optional<double> published;
@@ -26,9 +30,9 @@ struct StudyLine {
   std::optional<double> deviation() const;
 };
 
-/// The lines of one case. `before` is the record of the case before it in the series, or nullptr.
-std::vector<StudyLine> judge_case(const Study& study, const StudySeries& series, size_t index,
-                                  const CaseRecord& record, const CaseRecord* before);
+/// The lines of one case. `records` are those of the series' cases up to this one.
+std::vector<StudyLine> judge_case(const Study& study, const StudySeries& series,
+                                  const std::vector<const CaseRecord*>& records);
 
 /// The line of a relation; figures that a case did not give make it fail.
 StudyLine judge_relation(const Study& study, const Relation& relation, const CaseRecord& first,

@@ -154,8 +154,10 @@ class StudyReader {
         {"title", "published_source", "rates", "axis", "series", "relation", "statistic", "chart", "reach"}));
     study_.title = r.text("title");
     study_.published_source = r.text("published_source", "published");
-    study_.rates = r.boolean("rates", false);
     read_axis(r);
+    study_.rates = r.boolean("rates", study_.axis.log);
+    if (study_.rates && !study_.axis.log)
+      r.fail(*r.source().get("rates"), "rates", "rates need a logarithmic axis (axis.log = true)");
     const auto inherited = read_inherited(r, {}, folder());
     auto series = r.tables("series");
     if (series.empty()) r.missing("series", "at least one table [[series]]");
@@ -166,6 +168,7 @@ class StudyReader {
     if (r.has("reach")) read_reach(r.table("reach"));
     r.finish();
     leave_out_fine_cases();
+    refuse_without_figures();
     return std::move(study_);
   }
 
@@ -183,9 +186,6 @@ class StudyReader {
       study_.axis.log = r.boolean("log", false);
     }
     r.finish();
-    if (study_.rates && !study_.axis.log)
-      document.fail(*document.source().get("rates"), "rates",
-                    "rates need a logarithmic axis (axis.log = true)");
   }
 
   void read_series(TableReader& r, const Inherited& study) {
@@ -306,6 +306,7 @@ class StudyReader {
       if (expectations && !c.expected_failure.empty())
         r.fail(*r.source().get(key), key, "a case that is expected to fail has no figures");
       TableReader figures = r.table(key);
+      figures.refuse_empty("a table of figures, such as { e_rr = 0.02 }");
       for (const auto& [name_key, value] : figures.source()) {
         const std::string name(name_key.str());
         if (c.scene) check_figure(figures, value, name, figure_names(*c.scene, c.solution));
@@ -407,11 +408,19 @@ class StudyReader {
     return names;
   }
 
+  static std::vector<std::string> figures_of(TableReader& r, const std::vector<std::string>& known) {
+    auto figures = r.texts("figures", known);
+    if (figures.empty())
+      r.fail(*r.source().get("figures"), "figures",
+             fmt::format("must name a figure: one of {}", fmt::join(known, ", ")));
+    return figures;
+  }
+
   void read_chart(TableReader r) {
     const auto known = names_of_cases([](const StudyCase& c) { return figure_names(*c.scene, c.solution); });
     Chart chart;
     r.allow_only({"figures", "distribution", "log"});
-    chart.figures = r.texts("figures", known);
+    chart.figures = figures_of(r, known);
     chart.distribution = r.boolean("distribution", false);
     chart.log = r.boolean("log", true);
     r.finish();
@@ -422,7 +431,9 @@ class StudyReader {
     const auto known = names_of_cases([](const StudyCase& c) { return error_names(*c.scene); });
     Reach reach;
     r.allow_only({"figures", "level"});
-    reach.figures = r.texts("figures", known);
+    if (known.empty())
+      r.missing("figures", "errors of a scene: no scene of this study is compared with an exact solution");
+    reach.figures = figures_of(r, known);
     reach.level = r.number("level", Range::positive());
     r.finish();
     study_.reach = reach;
@@ -452,6 +463,23 @@ class StudyReader {
         std::remove_if(statistics.begin(), statistics.end(),
                        [&](const Statistic& s) { return study_.series[s.series].cases.empty(); }),
         statistics.end());
+  }
+
+  /// Refuses a study without a case to run, and a chart of which no case that runs has the figures.
+  void refuse_without_figures() const {
+    const auto runs = [](const StudySeries& s) { return !s.cases.empty(); };
+    if (std::none_of(study_.series.begin(), study_.series.end(), runs))
+      throw SceneError(fmt::format("{}: every case is marked fine; give --fine", path_));
+    if (!study_.chart) return;
+    const auto known = names_of_cases([](const StudyCase& c) {
+      return c.expected_failure.empty() ? figure_names(*c.scene, c.solution) : std::vector<std::string>();
+    });
+    for (const auto& figure : study_.chart->figures)
+      if (std::find(known.begin(), known.end(), figure) != known.end()) return;
+    throw SceneError(
+        fmt::format("{}: chart.figures = [{}]: no case that is run, and not expected to fail, gives "
+                    "one of them",
+                    path_, fmt::join(study_.chart->figures, ", ")));
   }
 
   std::string path_;

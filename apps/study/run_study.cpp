@@ -57,7 +57,9 @@ std::string line_text(const StudyLine& line, const std::string& published_source
   std::string beside = line.judged ? expected_text(line.expectation) : "";
   if (deviation) beside += fmt::format(" ({:+.2f} %)", percent_above(1 + *deviation));
   text += fmt::format("  {:<42}", beside);
+  if (line.difference) text += fmt::format("  difference {:>11}", number(*line.difference));
   if (line.rate) text += fmt::format("  rate {:5.2f}", *line.rate);
+  if (line.extrapolated) text += fmt::format("  extrapolated {}", number(*line.extrapolated));
   if (line.published) text += fmt::format("  {} {}", published_source, number(*line.published));
   if (!line.note.empty()) text += "  " + line.note;
   text.erase(text.find_last_not_of(' ') + 1);
@@ -108,7 +110,7 @@ class StudyRun {
     write_study_files(options_.directory, study_, rows_);
     const std::string table = options_.directory + "/" + study_.name + ".csv";
     say("table {}\n", table);
-    const std::string problem = draw_study(table, options_.quiet);
+    const std::string problem = study_.has_figures() ? draw_study(table, options_.quiet) : "";
     if (!problem.empty()) fmt::print(stderr, "vsb: no pictures: {}\n", problem);
     return conclude();
   }
@@ -203,9 +205,10 @@ class StudyRun {
 
   void add_row(const Task& task) {
     const auto& series = study_.series[task.series];
-    const CaseRecord* before = task.index > 0 ? &*find(task.series, task.index - 1).record : nullptr;
+    std::vector<const CaseRecord*> records;
+    for (size_t i = 0; i <= task.index; ++i) records.push_back(&*find(task.series, i).record);
     rows_.push_back({series.name, case_of(task).text, case_of(task).directory, *task.record,
-                     judge_case(study_, series, task.index, *task.record, before)});
+                     judge_case(study_, series, records)});
   }
 
   const Task& find(size_t series, size_t index) const {

@@ -93,6 +93,11 @@ struct Study {
   std::vector<Statistic> statistics;
   std::optional<Chart> chart;
   std::optional<Reach> reach;
+
+  /// What its charts show: as the study says; else the errors of its scenes; else what scenes without an
+  /// exact solution are judged by (run/summary.hpp). Cases that are expected to fail have none.
+  std::vector<std::string> figures() const;
+  bool has_figures() const { return !figures().empty(); }
 };
 
 }  // namespace vsb::app

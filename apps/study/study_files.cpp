@@ -31,7 +31,8 @@ std::string csv(const std::optional<double>& x) {
 
 std::string csv_table(const Study& study, const std::vector<StudyRow>& rows) {
   std::string text =
-      "study,series,case,figure,value,rate,expected,lowest,highest,deviation,source,published,verdict,"
+      "study,series,case,figure,value,rate,difference,extrapolated,expected,lowest,highest,deviation,source,"
+      "published,verdict,"
       "particles,steps,seconds,particle_steps,ns_per_particle_step,directory,state_hash,note\n";
   for (const auto& row : rows)
     for (const auto& line : row.lines) {
@@ -39,9 +40,10 @@ std::string csv_table(const Study& study, const std::vector<StudyRow>& rows) {
       std::vector<std::string> cells = {csv(study.name), csv(row.series), csv(row.text), csv(line.figure),
                                         // unlike elsewhere, infinity is a value here
                                         line.value ? fmt::format("{}", *line.value) : "", csv(line.rate),
-                                        csv(e.value), line.judged ? csv(e.lowest) : "",
-                                        line.judged ? csv(e.highest) : "", csv(line.deviation()),
-                                        line.judged ? csv(e.source) : "", csv(line.published),
+                                        csv(line.difference), csv(line.extrapolated), csv(e.value),
+                                        line.judged ? csv(e.lowest) : "", line.judged ? csv(e.highest) : "",
+                                        csv(line.deviation()), line.judged ? csv(e.source) : "",
+                                        csv(line.published),
                                         !line.judged  ? ""
                                         : line.passed ? "pass"
                                                       : "fail"};
@@ -70,7 +72,8 @@ std::string json_description(const Study& study) {
           if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
   for (const auto& name : names) errors.push_back(name);
-  const Chart chart = study.chart.value_or(Chart{names, false, true});
+  // What a scene without an exact solution gives goes to a value of its own, not to zero.
+  const Chart chart = study.chart.value_or(Chart{study.figures(), false, !names.empty()});
   toml::array figures;
   for (const auto& name : chart.figures) figures.push_back(name);
   toml::table provenance;
@@ -87,7 +90,7 @@ std::string json_description(const Study& study) {
       {"chart", toml::table{{"figures", figures},
                             {"distribution", chart.distribution},
                             {"log", chart.log},
-                            {"cost", !study.chart}}},
+                            {"cost", !study.chart && !names.empty()}}},
       {"published_source", study.published_source},
       {"provenance", provenance},
   };

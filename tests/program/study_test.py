@@ -4,7 +4,7 @@ import csv
 
 from vsb_program import SCENES, ProgramTest, vsb
 
-COLUMNS = ["study", "series", "case", "figure", "value", "rate", "expected", "lowest", "highest", "deviation", "source",
+COLUMNS = ["study", "series", "case", "figure", "value", "rate", "difference", "extrapolated", "expected", "lowest", "highest", "deviation", "source",
            "published", "verdict", "particles", "steps", "seconds", "particle_steps", "ns_per_particle_step", "directory",
            "state_hash", "note"]
 
