@@ -13,6 +13,7 @@
 #include "run/run_scene.hpp"
 #include "run/simulation.hpp"
 #include "run/standard_streams.hpp"
+#include "scene/open_setting.hpp"
 #include "scene/scene_error.hpp"
 #include "study/read_study.hpp"
 #include "study/run_study.hpp"
@@ -73,8 +74,9 @@ int main(int argc, char** argv) {
   const auto add_scene_options = [&](CLI::App* command) {
     command->add_option("scene", scene_path, "Scene file (TOML)")->required();
     command
-        ->add_option("--set", overrides,
-                     "Replace a value of the scene, e.g. time.kappa=0.1 or body[0].density=2000")
+        ->add_option(
+            "--set", overrides,
+            "Replace a value of the scene, e.g. time.kappa=0.1 or body[0].density=2000; KEY= removes the key")
         ->type_name("KEY=VALUE")
         ->take_all();
     add_threads(command);
@@ -140,6 +142,9 @@ int main(int argc, char** argv) {
     const auto choice = choose_threads(threads, [&] { return count_particles(scene); });
     options.threads = choice.why;
     const KokkosSession kokkos(choice.threads);
+    if (*check || !options.quiet)
+      if (const auto advice = open_setting_advice(scene, scene_path, overrides); !advice.empty())
+        fmt::print("{}{}\n", *check ? "# " : "", advice);
     if (*run) return run_scene(scene, options).code;
     if (*check) check_scene(scene);
     return exit_done;

@@ -10,6 +10,7 @@
 #include "run/cut_lattice.hpp"
 #include "run/lattice_points.hpp"
 #include "run/moment_fit.hpp"
+#include "run/needed_memory.hpp"
 #include "run/simulation.hpp"
 
 namespace vsb::app {
@@ -76,6 +77,7 @@ void place_body(const Scene& scene, size_t b, CutVolume& cut, const Place& place
 }  // namespace
 
 PlacedParticles place_particles(const Scene& scene) {
+  refuse_what_does_not_fit(scene);
   refuse_cut_bodies(scene);
   PlacedParticles placed;
   for (size_t b = 0; b < scene.bodies.size(); ++b) {

@@ -7,21 +7,34 @@
 #include <cmath>
 #include <limits>
 
+#include "run/region_size.hpp"
 #include "scene/read_volumetric.hpp"
 
 namespace vsb::app {
 
 namespace {
 
-/// Of the tractions, and of each body's weight if it were as high as the grid.
+/// Whether a face of the grid, of any direction, holds a component of the motion.
+bool is_held(const Scene& scene, size_t component) {
+  for (const auto& faces : scene.faces.fixed)
+    for (const unsigned char fixed : faces)
+      if (fixed >> component & 1) return true;
+  return false;
+}
+
+/// Of the tractions where the bodies are, and of each body's weight where something holds it: what falls
+/// freely is not strained by it.
 double largest_load(const Scene& scene) {
   double load = 0;
-  const auto box = bounding_box(scene.grid, scene.dimension);
-  for (const auto& traction : scene.tractions)
-    load = std::max(load, largest_stress(traction.field, box.lower, box.upper));
-  for (const auto& body : scene.bodies)
+  const auto grid = bounding_box(scene.grid, scene.dimension);
+  for (const auto& body : scene.bodies) {
+    const auto box = bounds_of(body.region, grid, scene.dimension);
+    for (const auto& traction : scene.tractions)
+      load = std::max(load, largest_stress(traction.field, box.lower, box.upper));
     for (size_t i = 0; i < 3; ++i)
-      load = std::max(load, body.density * std::abs(scene.gravity[i]) * (box.upper[i] - box.lower[i]));
+      if (is_held(scene, i))
+        load = std::max(load, body.density * std::abs(scene.gravity[i]) * (box.upper[i] - box.lower[i]));
+  }
   return load;
 }
 
@@ -54,12 +67,8 @@ bool moves_as_a_whole(const Scene& scene) {
            std::holds_alternative<Affine<Stress6>>(t.field);
   };
   if (std::any_of(scene.tractions.begin(), scene.tractions.end(), floats)) return false;
-  for (size_t i = 0; i < 3; ++i) {
-    bool held = scene.gravity[i] == 0;
-    for (const auto& faces : scene.faces.fixed)  // a face of any direction may hold component i
-      for (const unsigned char fixed : faces) held = held || (fixed >> i & 1);
-    if (!held) return true;
-  }
+  for (size_t i = 0; i < 3; ++i)
+    if (scene.gravity[i] != 0 && !is_held(scene, i)) return true;
   return false;
 }
 

@@ -17,6 +17,7 @@ template <size_t N>
 Affine<std::array<double, N>> read_affine_table(TableReader t, size_t count, int dimension,
                                                 const std::string& unit) {
   Affine<std::array<double, N>> field;
+  t.refuse_empty("a table with value, and dx, dy, dz for what changes in space");
   const auto read = [&](const std::string& key, const std::string& what, std::array<double, N>& to) {
     const auto row = t.numbers(key, count, Range::any(), std::vector<double>(count, 0.0), what);
     std::copy(row.begin(), row.end(), to.begin());

@@ -72,6 +72,20 @@ std::vector<double> equal_intervals(double low, double high, int count) {
   return nodes;
 }
 
+/// Equal intervals between the two numbers of a key, which must be so many different numbers.
+std::vector<double> divided(const TableReader& r, const std::string& key, const std::vector<double>& ends,
+                            int count) {
+  auto nodes = equal_intervals(ends[0], ends[1], count);
+  if (std::adjacent_find(nodes.begin(), nodes.end(), [](double a, double b) { return !(b > a); }) !=
+      nodes.end())
+    r.fail(
+        *r.source().get(key), key,
+        fmt::format("lie too close together for {} cells: double precision has not as many numbers between "
+                    "them",
+                    count));
+  return nodes;
+}
+
 GridSpec read_polar(TableReader& document, int dimension) {
   if (dimension == 1)
     document.fail(*document.source().get("polar"), "polar", "a polar grid is for dimension 2 or 3");
@@ -95,8 +109,8 @@ GridSpec read_polar(TableReader& document, int dimension) {
     r.fail(*r.source().get("angular_cells"), "angular_cells",
            fmt::format("a cell must span <= 90 degrees, not {:g}", span / angular));
   const double degree = std::acos(-1.0) / 180;
-  set_axis(grid, 0, equal_intervals(radii[0], radii[1], radial));
-  auto theta = equal_intervals(angles[0], angles[1], angular);
+  set_axis(grid, 0, divided(r, "radii", radii, radial));
+  auto theta = divided(r, "angles", angles, angular);
   for (auto& angle : theta) angle *= degree;
   set_axis(grid, 1, std::move(theta));
   if (dimension == 3) set_axis(grid, 2, r.increasing_numbers("z", "m, nodes"));

@@ -71,6 +71,9 @@ void read_strength(TableReader& r, bool friction, MaterialSpec& m) {
 void read_tensile_strength(TableReader& r, MaterialSpec& m) {
   if (m.friction_angle > 0) {
     const double most = apex(m);
+    if (!std::isfinite(most))
+      r.fail(*r.source().get("friction_angle"), "friction_angle",
+             "is too small for the cohesion: their cone has no apex below the largest number; give 0");
     m.tensile_strength = r.number("tensile_strength", Range::between(0, most), most,
                                   "Pa, of the largest principal stress; the apex: no cut-off");
   } else if (r.has("tensile_strength")) {  // there is no apex, and no number that says so

@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
+
+#include "scene/inclined_cylinder.hpp"
 
 namespace vsb::app {
 
@@ -18,6 +21,9 @@ Point point_of(const std::vector<double>& values) {
   std::copy(values.begin(), values.end(), p.begin());
   return p;
 }
+
+/// So that squares, and products of two, are finite.
+const Range coordinates = Range::between(-1e150, 1e150), lengths{0, 1e150, true, false};
 
 Region parse(const toml::node& node, const TableReader& parent, const std::string& key, int dimension);
 
@@ -35,7 +41,7 @@ std::vector<Region> parse_parts(const toml::node& node, const TableReader& paren
 Region parse_simple(const std::string& kind, TableReader& r, const toml::node& at, const TableReader& parent,
                     const std::string& key, int dimension) {
   const auto d = static_cast<size_t>(dimension);
-  const auto vector = [&](const char* name) { return point_of(r.numbers(name, d, Range::any())); };
+  const auto vector = [&](const char* name) { return point_of(r.numbers(name, d, coordinates)); };
   static const std::map<std::string, std::vector<std::string>> keys = {
       {"box", {"lower", "upper"}},          {"ball", {"center", "radius"}},
       {"disc", {"center", "radius"}},       {"cylinder", {"axis", "center", "radius", "lower", "upper"}},
@@ -53,24 +59,28 @@ Region parse_simple(const std::string& kind, TableReader& r, const toml::node& a
     if (kind == "disc" && dimension != 2)
       parent.fail(at, key, "a disc is for dimension 2; use ball or cylinder");
     const Point center = vector("center");
-    return ball(center, r.number("radius", Range::positive()));
+    return ball(center, r.number("radius", lengths));
   }
   if (kind == "cylinder") {
     if (dimension != 3) parent.fail(at, key, "a cylinder is for dimension 3; use disc");
-    const std::string axis = r.choice("axis", {"x", "y", "z"}, "z");
+    const bool inclined = r.source().get("axis") && r.source().get("axis")->is_array();
+    const Point direction = inclined ? vector("axis") : Point{};
+    if (inclined && direction == Point{}) parent.fail(at, key, "the axis must not be zero");
+    const std::string axis = inclined ? "" : r.choice("axis", {"x", "y", "z"}, "z");
     const Point center = vector("center");
-    const double radius = r.number("radius", Range::positive());
+    const double radius = r.number("radius", lengths);
     const double unlimited = std::numeric_limits<double>::max();
     const double lower = r.number("lower", Range::any(), -unlimited);
     const double upper = r.number("upper", Range::any(), unlimited);
     if (!(upper > lower)) parent.fail(at, key, "'upper' must be greater than 'lower'");
+    if (inclined) return inclined_cylinder(direction, center, radius, lower, upper);
     return cylinder(axis[0] - 'x', center, radius, lower, upper);
   }
   if (kind == "ellipse" || kind == "ellipsoid") {
     if (kind == "ellipse" && dimension != 2)
       parent.fail(at, key, "an ellipse is for dimension 2; use ellipsoid");
     const Point center = vector("center");
-    return ellipsoid(dimension, center, point_of(r.numbers("semi_axes", d, Range::positive())));
+    return ellipsoid(dimension, center, point_of(r.numbers("semi_axes", d, lengths)));
   }
   const Point on = vector("point"), normal = vector("normal");  // half_space
   if (normal == Point{}) parent.fail(at, key, "the normal must not be zero");

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "scene/check_magnitudes.hpp"
 #include "scene/limits.hpp"
 #include "scene/read_affine.hpp"
 #include "scene/read_basis.hpp"
@@ -96,6 +97,7 @@ TimeShape read_time_function(TableReader r) {
   static const std::vector<std::string> forms = {"ramp", "ramp_steps", "smooth_ramp", "smooth_ramp_steps",
                                                  "step", "table",      "sine"};
   r.allow_only(forms);
+  r.refuse_empty(fmt::format("a table with one of {}", fmt::join(forms, ", ")));
   if (std::count_if(forms.begin(), forms.end(), [&](const auto& key) { return r.has(key); }) > 1) {
     const auto first = r.source().begin();
     r.fail(first->second, std::string(first->first.str()),
@@ -413,10 +415,30 @@ bool is_loaded(const Scene& scene) {
          std::any_of(scene.bodies.begin(), scene.bodies.end(), begins_loaded);
 }
 
-/// Whether files may have this name, and another word behind it.
-bool is_file_name(const std::string& name) {
-  const auto bad = [](unsigned char c) { return c <= ' ' || c == 127 || c == '/' || c == '\\'; };
-  return !name.empty() && name.size() <= 200 && name[0] != '.' && std::none_of(name.begin(), name.end(), bad);
+/// Whether names of files may have it.
+bool may_be_in_name(unsigned char c) {
+  return c > ' ' && c != 127 && c != '/' && c != '\\';
+}
+
+/// The name of a scene that gives none: its file's, with a dash where a name of results may not have what is
+/// there.
+std::string name_of_file(const std::string& path) {
+  std::string name = std::filesystem::path(path).stem().string();
+  for (char& c : name)
+    if (!may_be_in_name(static_cast<unsigned char>(c))) c = '-';
+  name.erase(0, name.find_first_not_of('.'));
+  return name.empty() ? "scene" : name.substr(0, 200);
+}
+
+/// Files get this name, and another word behind it.
+std::string read_name(TableReader& r, const std::string& path) {
+  const std::string name = r.text("name", name_of_file(path));
+  if (name.empty() || name.size() > 200 || name[0] == '.' ||
+      !std::all_of(name.begin(), name.end(),
+                   [](char c) { return may_be_in_name(static_cast<unsigned char>(c)); }))
+    r.fail(*r.source().get("name"), "name",
+           "must be usable as a file name: 1 to 200 printable characters, no space or slash, no leading dot");
+  return name;
 }
 
 /// Particles that go out of the grid take with them what else counts on them.
@@ -442,13 +464,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
   r.allow_only({"name", "title", "setting", "dimension", "precision", "gravity", "grid", "faces", "body",
                 "traction", "method", "time", "static", "removal", "output", "compare", "published"});
   Scene scene;
-  scene.name = r.text("name", std::filesystem::path(path).stem().string());
-  if (!is_file_name(scene.name)) {
-    const std::string what =
-        "must be usable as a file name: 1 to 200 printable characters, no space or slash, no leading dot";
-    if (const auto* node = document.get("name")) r.fail(*node, "name", what);
-    r.missing("name", what);
-  }
+  scene.name = read_name(r, path);
   scene.title = r.text("title", "");
   if (r.choice("setting", {"paper", "accurate"}, "paper") == "accurate") scene.setting = Setting::accurate;
   scene.dimension = static_cast<int>(r.integer("dimension", 1, 3));
@@ -478,6 +494,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
            "must be \"determinant\" with law = \"hencky\", whose stress is that of J = det F");
   if (!r.has("time")) r.missing("time", "a table with dt or kappa, and steps or until_static");
   scene.time = read_time(r.table("time"), scene);
+  check_magnitudes(scene, r);
   for (size_t k = 0; k < time_shapes.size(); ++k) {
     scene.tractions[k].time = time_shapes[k].at(scene.time.dt);
     if (scene.time.until_static && !std::isfinite(scene.tractions[k].time.settled_at()))

@@ -45,12 +45,23 @@ toml::table parse_value(const std::string& text, const std::string& source) {
   }
 }
 
+/// What is there to be removed by an override; throws where nothing is.
+void remove_key(toml::table& table, const std::string& key, const std::string& source) {
+  if (table.erase(key) > 0) return;
+  std::vector<std::string> known;
+  for (const auto& [name, value] : table) known.emplace_back(name.str());
+  throw SceneError(fmt::format("{}: there is no '{}' to remove{}", source, key, did_you_mean(key, known)));
+}
+
+/// Replaces a value, adds it, or, where nothing follows the equals sign, removes it.
 void apply_override(toml::table& document, const std::string& argument) {
   const auto equals = argument.find('=');
   if (equals == std::string::npos || equals == 0)
-    throw SceneError(fmt::format("--set {}: must be key=value, such as time.kappa=0.1", argument));
+    throw SceneError(fmt::format(
+        "--set {}: must be key=value, such as time.kappa=0.1, or key= to remove the key", argument));
   const std::string source = "--set " + argument;
-  auto value = parse_value(argument.substr(equals + 1), source);
+  const bool removes = argument.find_first_not_of(" \t", equals + 1) == std::string::npos;
+  auto value = removes ? toml::table() : parse_value(argument.substr(equals + 1), source);
   const auto parts = split_path(argument.substr(0, equals), argument);
   toml::node* node = &document;
   std::string so_far;
@@ -63,11 +74,13 @@ void apply_override(toml::table& document, const std::string& argument) {
                                      so_far, argument.substr(so_far.size(), equals - so_far.size())));
       }
       if (!table) throw SceneError(fmt::format("{}: '{}' is not inside a table", source, *key));
+      if (last && removes) return remove_key(*table, *key, source);
       if (last) {
         table->insert_or_assign(*key, std::move(*value.get("value")));
         return;
       }
       if (!table->contains(*key)) {
+        if (removes) return remove_key(*table, *key, source);
         if (std::holds_alternative<size_t>(parts[i + 1]))
           throw SceneError(fmt::format("{}: there is no '{}' in the scene", source, *key));
         table->insert(*key, toml::parse("", source));
@@ -80,6 +93,10 @@ void apply_override(toml::table& document, const std::string& argument) {
       if (!array || index >= array->size())
         throw SceneError(fmt::format("{}: there is no element {} (the array has {})", source, index,
                                      array ? array->size() : 0));
+      if (last && removes) {
+        array->erase(array->cbegin() + static_cast<std::ptrdiff_t>(index));
+        return;
+      }
       if (last) {
         array->replace(array->cbegin() + static_cast<std::ptrdiff_t>(index), std::move(*value.get("value")));
         return;

@@ -3,9 +3,11 @@
 /// Whether a box lies in a region: the answers none and all must be certain.
 #include "scene/region.hpp"
 
+#include <cmath>
 #include <string>
 
 #include "app/shapes.hpp"
+#include "scene/inclined_cylinder.hpp"
 
 using namespace vsb::app;
 using vsb::test::Random;
@@ -58,6 +60,30 @@ TEST_CASE("none and all are certain for every shape and combination") {
     check_answers(intersection_of({ball({}, 1.6), half_space({0.5, 0, 0}, {1, 0, 0})}), d);
   }
   for (const int axis : {0, 1, 2}) check_answers(cylinder(axis, {0.1, 0.2, -0.1}, 1.3, -1.1, 1.2), 3);
+  check_answers(inclined_cylinder({1, -2, 0.5}, {0.1, 0.2, -0.1}, 1.3, -1.1, 1.2), 3);
+}
+
+TEST_CASE("an inclined cylinder along an axis is the one of that axis") {
+  Random random(11);
+  const AxisBox everything{{-2, -2, -2}, {2, 2, 2}};
+  for (const int axis : {0, 1, 2}) {
+    Point along{};
+    along[static_cast<size_t>(axis)] = 3.0;  // its length does not matter
+    const Point center{0.1, 0.2, -0.1};
+    const Region straight = cylinder(axis, center, 1.3, -0.9, 1.2);
+    const Region inclined = inclined_cylinder(along, center, 1.3, -0.9, 1.2);
+    for (int n = 0; n < 500; ++n) {
+      const Point x = random_in(everything, random);
+      CHECK(inclined(x) == straight(x));
+    }
+  }
+  // 45 degrees: the axis through the origin along (1, 0, 1), from -1 to 2 along it.
+  const Region borehole = inclined_cylinder({1, 0, 1}, {}, 0.5, -1, 2);
+  CHECK(borehole({1.4, 0, 1.4}));   // 1.98 along
+  CHECK(!borehole({1.5, 0, 1.5}));  // 2.12 along
+  CHECK(!borehole({-0.8, 0, -0.8}));
+  CHECK(borehole({0.3, 0.25, -0.3}));   // sqrt(0.09 * 2 + 0.0625) = 0.49 from the axis
+  CHECK(!borehole({0.3, 0.30, -0.3}));  // 0.52
 }
 
 TEST_CASE("a feature of any thickness makes a box that it crosses a box in between") {

@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Input that is odd but right, and input that is wrong in a way that only shows when it is worked out: sizes, magnitudes, tables
+without a key; and the words on the screen about both."""
+import resource
+import subprocess
+import time
+import unittest
+
+import numpy as np
+from test_bad_scenes import GOOD
+from vsb_program import PROGRAM, SCENES, ProgramTest, last_fields, vsb
+
+
+class Input(ProgramTest):
+    def changed(self, old, new, text=GOOD):
+        self.assertEqual(text.count(old), 1, old)
+        return text.replace(old, new)
+
+    def refuse(self, text, *words, name="scene.toml", extra=(), limit=None):
+        """Refused within seconds, with exit code 2 and all the words; `limit`: bytes of address space."""
+        begun = time.monotonic()
+        set_limit = (lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit))) if limit else None
+        done = subprocess.run([PROGRAM, "check", str(self.write(text, name)), *extra], capture_output=True, text=True, timeout=60,
+                              preexec_fn=set_limit)
+        self.assertLess(time.monotonic() - begun, 30)  # a hang guard, not a timing
+        self.assertEqual(done.returncode, 2, f"{done.stderr}{done.stdout[:500]}\n{text}")
+        for word in words:
+            self.assertIn(word, done.stderr)
+        return done.stderr
+
+    def check(self, text, *arguments, name="scene.toml"):
+        done = vsb("check", self.write(text, name), *arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def test_a_file_with_a_blank_in_its_name(self):
+        for file, name in (("my scene.toml", "my-scene"), (".toml", "toml"), ("a b\tc.toml", "a-b-c")):
+            self.run_scene(self.write(GOOD, file), out="blank")
+            self.assertTrue((self.folder / "blank" / f"{name}_000010.hdf").is_file(), name)
+        # A name that the scene gives is not changed in secret.
+        self.refuse('name = "my scene"\n' + GOOD, 'scene.toml:1:', 'name = "my scene"'.replace('"', "'"), "no space")
+
+    def test_tables_without_a_key(self):
+        for old, new, words in (("density", "velocity = {}\ndensity", "body[0].velocity = {}: must be a table with value"),
+                                ("density", "stress = {}\ndensity", "body[0].stress = {}: must be a table with value"),
+                                ("pressure = 1e3", "affine = {}", "traction[0].affine = {}: must be a table with value"),
+                                ("pressure = 1e3", "pressure = 1e3\ntime = {}", "traction[0].time = {}: must be a table with one of ramp"),
+                                ("steps = 10", "steps = 10\n[removal]", "removal"),
+                                ("steps = 10", "steps = 10\n[compare]", "compare.solution is missing"),
+                                ("particles_per_cell = 2", "lattice = {}", "lattice")):
+            message = self.refuse(self.changed(old, new), words)
+            self.assertRegex(message, r"scene\.toml:\d+:\d+: ")
+        # What has a default for every key and means something without one.
+        for table in ("method", "output", "faces", "static"):
+            self.check(GOOD + f"[{table}]\n")
+        self.check(self.changed("steps = 10", "until_static = {}"))
+
+    def test_numbers_that_are_too_small_to_compute_with(self):
+        polar = "polar = { radii = [1.0, 2.0], radial_cells = 4, angles = [0.0, %s], angular_cells = 4 }"
+        ring = self.changed("lower = [0.0, 0.0], upper = [4.0, 4.0], spacing = 0.5", polar % "5e-324")
+        self.refuse(ring, "scene.toml:2:", "grid.polar.angles[1] = 5e-324", "too small to compute with")
+        self.refuse(ring.replace("[0.0, 5e-324]", "[90.0, 90.00000000000003]"), "scene.toml:2:", "angles", "too close together for 4 cells")
+        for old, new in (("density = 1000.0", "density = 1e-320"), ("upper = [3.0, 3.0]", "upper = [3.0, 4e-310]"),
+                         ("kappa = 0.5", "kappa = 5e-324"), ("pressure = 1e3", "pressure = -5e-324")):
+            self.refuse(self.changed(old, new), "too small to compute with: must be 0 or at least 2.2e-308 in size")
+        self.check(self.changed("pressure = 1e3", "pressure = 0.0"))
+
+    def test_numbers_that_overflow_together(self):
+        for old, new, words in (("youngs_modulus = 1e6", "youngs_modulus = 1.7e308", "body[0]: the modulus in uniaxial strain is inf"),
+                                ("density = 1000.0", "density = 1e-307", "body[0]: the mass of a particle is 6.25e-309")):
+            self.refuse(self.changed(old, new), words, "scene.toml:", 'precision = "double"')
+        single = 'precision = "float"\n' + GOOD
+        for old, new in (("density = 1000.0", "density = 1e40"), ("youngs_modulus = 1e6", "youngs_modulus = 1e39"),
+                         ("density = 1000.0", "density = 1e-40"), ("pressure = 1e3", "pressure = 1e39"),
+                         ("density", "velocity = [1e39, 0.0]\ndensity"), ("density", "stress = [1e39, 0, 0, 0, 0, 0]\ndensity")):
+            self.refuse(self.changed(old, new, single), "float")
+
+    def test_grids_and_lattices_beyond_the_machine(self):
+        giga = 10**9
+        huge = GOOD.replace("upper = [4.0, 4.0], spacing = 0.5", "upper = [25e3, 25e3], spacing = 1.0")
+        message = self.refuse(huge, "6.25e+08 nodes", "need at least 55 GB", "and there are 3 GB", "grid.spacing", limit=3 * giga)
+        self.assertIn("scene.toml", message)
+        # Particles alone: 2 m x 2 m of 64 x 64 in cells of 25 mm.
+        fine = GOOD.replace("spacing = 0.5", "spacing = 0.02").replace("particles_per_cell = 2", "particles_per_cell = 64")
+        self.refuse(fine, "particles or more need at least", "and there are 3 GB", limit=3 * giga)
+        self.refuse(GOOD.replace("spacing = 0.5", "spacing = 0.00125").replace("particles_per_cell = 2", "particles_per_cell = 64"),
+                    "body 'block' has", "can be numbered")
+        rings = "lattice.concentric = { center = [2.0, 2.0], radii = [0.1, 1.0], rings = 1000000, per_ring = 10000000 }"
+        self.refuse(self.changed("particles_per_cell = 2", rings), "the lattice of body 'block' has 1e+13 points")
+        self.refuse(self.changed("lower = [0.0, 0.0], upper = [4.0, 4.0], spacing = 0.5",
+                                 "x = [%s], y = [0.0, 1.0, 4.0]" % ", ".join(str(k / 250) for k in range(1001)))
+                    .replace("particles_per_cell = 2", "particles_per_cell = 64").replace("y = [0.0, 1.0, 4.0]",
+                             "y = [%s]" % ", ".join(str(k / 250) for k in range(1001))), "the lattice of body 'block' has 4.1e+09 points")
+        self.refuse(self.changed("upper = [4.0, 4.0]", "upper = [1e6, 1e6]"), "<= 1e9 nodes", "spacing")
+
+    def test_free_fall_is_no_matter_of_units(self):
+        fall = GOOD.replace("[[traction]]\npressure = 1e3\n", "").replace("youngs_modulus = 1e6", "youngs_modulus = 1e4")
+        fall = "gravity = [0.0, -9.81]\n" + fall  # weight over modulus: 2 for 2 m, were it held
+        self.assertNotIn("units", vsb("check", self.write(fall)).stderr)
+        held = fall + '[faces]\ny_min = "fixed"\n'
+        self.assertIn("1.96e+04 Pa / 1e+04 Pa = 2: check the units".replace("1.96e+04 Pa", "").strip(), vsb("check", self.write(held)).stderr)
+        # The height that counts is that of the body, not that of the grid above it.
+        tall = held.replace("youngs_modulus = 1e4", "youngs_modulus = 1e6").replace("upper = [4.0, 4.0]", "upper = [4.0, 64.0]")
+        self.assertNotIn("units", vsb("check", self.write(tall)).stderr)
+
+    def test_overrides_that_remove_keys(self):
+        done = self.check(GOOD, "--set", "body[0].name=", "--set", "time.steps=", "--set", "time.until_static={ max_steps = 7 }")
+        self.assertIn("name = 'body 1'", done.stdout)
+        self.assertIn("max_steps = 7", done.stdout)
+        scene = SCENES / "column.toml"
+        self.assertIn("is missing", self.refuse(GOOD, "time.kappa is missing", extra=("--set", "time.kappa=")))
+        self.refuse(GOOD, "--set time.kapa=", "no 'kapa' to remove", "did you mean 'kappa'", extra=("--set", "time.kapa="))
+        self.refuse(GOOD, "--set method.damping=", "no 'method' to remove", extra=("--set", "method.damping="))
+        self.refuse(GOOD, "no element 1", extra=("--set", "traction[1]="))
+        bare = vsb("check", scene, "--set", "traction[0]=", "--set", "published=", "--set", "compare=")
+        self.assertEqual(bare.returncode, 0, bare.stderr)
+        self.assertNotIn("[[traction]]", bare.stdout)
+        # An empty string is still to be had.
+        self.assertIn("title = ''", self.check('title = "t"\n' + GOOD, "--set", 'title=""').stdout)
+
+    def test_an_inclined_cylinder(self):
+        """The mass of a cylinder of radius 0.8 and length 2 along (1, 0, 1), cut along its surface."""
+        text = GOOD.replace("dimension = 2", "dimension = 3").replace("lower = [0.0, 0.0], upper = [4.0, 4.0]", "lower = [0.0, 0.0, 0.0], upper = [4.0, 4.0, 4.0]")
+        text = text.replace("spacing = 0.5", "spacing = 0.25").replace('name = "block"', 'boundary = "cut"')
+        shape = "{ box = { lower = [1.0, 1.0], upper = [3.0, 3.0] } }"
+        cylinder = "{ cylinder = { axis = [1.0, 0.0, 1.0], center = [2.0, 2.0, 2.0], radius = 0.8, lower = %r, upper = %r } }"
+        middle = 4 / np.sqrt(2)  # of the centre along the axis
+        good = text.replace(shape, cylinder % (middle - 1, middle + 1))
+        self.run_scene(self.write(good), "--set", "time.steps=1", "--set", "traction=", out="inclined")
+        fields = last_fields(self.folder / "inclined")
+        self.assertAlmostEqual(fields["mass"].sum() / (1000 * np.pi * 0.64 * 2), 1, delta=2e-3)
+        x = fields["position"] - 2
+        along, across = (x[:, 0] + x[:, 2]) / np.sqrt(2), np.hypot((x[:, 0] - x[:, 2]) / np.sqrt(2), x[:, 1])
+        self.assertLess(np.abs(along).max(), 1)
+        self.assertLess(across.max(), 0.8)
+        self.refuse(good.replace("axis = [1.0, 0.0, 1.0]", "axis = [0.0, 0.0, 0.0]"), "the axis must not be zero")
+        self.refuse(good.replace("axis = [1.0, 0.0, 1.0]", "axis = [1.0, 0.0]"), "axis", "an array of 3")
+
+    def test_a_scene_that_leaves_its_setting_open_is_told_of_the_accurate_one(self):
+        advice = 'setting = "accurate"'
+        says = lambda text, *arguments: advice in vsb("check", self.write(text), *arguments).stdout.replace("setting = 'paper'", "")
+        self.assertTrue(says(GOOD))
+        run = lambda *more: vsb("run", self.write(GOOD), "--out", self.folder / "out", *more).stdout
+        self.assertEqual(run().count(advice), 1)
+        self.assertEqual(run("--quiet"), "")
+        chosen = ('setting = "paper"\n' + GOOD, GOOD + '[method]\nbasis = "linear"\n', GOOD.replace("density", 'boundary = "keep"\ndensity'))
+        impossible = ('precision = "float"\n' + GOOD, GOOD.replace("pressure = 1e3", 'pressure = 1e3\nimposition = "virtual_stress_original"'),
+                      GOOD.replace("lower = [0.0, 0.0], upper = [4.0, 4.0], spacing = 0.5", "x = [0.0, 1.0, 2.0, 3.0, 4.0], y = [0.0, 1.0, 2.0, 3.0, 4.0]"),
+                      GOOD.replace("particles_per_cell = 2", "lattice.uniform = { spacing = 0.21 }\njitter = 0.1"),
+                      GOOD + '[output]\nfields = ["recovered_stress"]\n')
+        for text in chosen + impossible:
+            self.assertFalse(says(text), text)
+        self.assertFalse(says(GOOD, "--set", "setting=paper"))
+
+
+if __name__ == "__main__":
+    unittest.main()
