@@ -65,20 +65,22 @@ std::string TractionWatch::loss_of(const TractionState& now, const TractionState
   const auto& traction = scene_.tractions[start.traction];
   const double before = length(start.force), after = length(now.force);
   const bool closed = before < closed_share * start.load;
-  const int before_cells = start.whole_cells + start.part_cells;
+  // Of particles that cross cells, a resultant swings by itself: it is lost where less of the boundary is
+  // loaded.
+  const int cells = now.whole_cells + now.part_cells, cells_before = start.whole_cells + start.part_cells;
+  const bool fewer = now.part_cells > start.part_cells || cells < (1 - lost_share) * cells_before;
   std::string what;
-  if (!closed && after < (1 - lost_share) * before)
+  if (!closed && fewer && after < (1 - lost_share) * before)
     what = fmt::format("has lost {:.0f} % of its resultant: at full load ({}) N act, at the start ({}) N did",
                        100 * (1 - after / before), text(now.force, scene_.dimension),
                        text(start.force, scene_.dimension));
-  else if (closed && std::abs(after - before) > lost_share * start.load)
+  else if (closed && fewer && std::abs(after - before) > lost_share * start.load)
     what = fmt::format(
-        "acts on another part of the boundary: its resultant at full load is ({}) N, at the start it was "
-        "({}) N",
+        "has lost a part of its surface: its resultant at full load is ({}) N, at the start it was ({}) N",
         text(now.force, scene_.dimension), text(start.force, scene_.dimension));
-  else if (!traction.carried && now.part_cells > start.part_cells + lost_share * before_cells)
+  else if (!traction.carried && now.part_cells > start.part_cells + lost_share * cells_before)
     what = fmt::format(
-        "ends within the boundary: beside its surface {} cells have nodes that carry nothing, {} had at the "
+        "ends within the boundary: {} cells beside its surface have nodes that carry nothing, {} had at the "
         "start",
         now.part_cells, start.part_cells);
   if (what.empty()) return {};

@@ -96,10 +96,9 @@ class Resultants(ProgramTest):
 
 
 class Surfaces(ProgramTest):
-    def ends_right(self, out, tolerance):
-        fields = last_fields(out)
-        np.testing.assert_allclose(fields["position"].max() / (9.55 * np.exp(-0.3)), 1, atol=tolerance)
-        np.testing.assert_allclose(fields["cauchy_stress"][:, 0].mean() / -300, 1, atol=5 * tolerance)
+    # With linear functions particles that cross cells at such strains keep the stress from being right (study
+    # large-strain); with B-splines it is.
+    SPLINES = ("--set", 'method.basis="quadratic_bspline"')
 
     def test_a_load_that_leaves_its_region_is_told(self):
         for name in ("cell_lanes", "particles"):
@@ -122,19 +121,32 @@ class Surfaces(ProgramTest):
 
     def test_a_surface_moves_with_the_material(self):
         for name in ("cell_lanes", "particles"):
-            for basis, tolerance in (("linear", 0.01), ("quadratic_bspline", 0.01)):
-                out = f"{name}-{basis}"
-                done = vsb("run", self.write(COLUMN), "--out", self.folder / out, *engine(name), *INITIAL,
-                           "--set", f'method.basis="{basis}"')
-                self.assertEqual(done.returncode, 0, out + done.stderr)
-                self.assertNotIn("traction 'end'", done.stderr)
-                self.ends_right(self.folder / out, tolerance)
-                self.assertNotIn("lost_at_step", self.summary(out)["tractions"][0])
+            done = vsb("run", self.write(COLUMN), "--out", self.folder / name, *engine(name), *INITIAL, *self.SPLINES)
+            self.assertEqual(done.returncode, 0, name + done.stderr)
+            self.assertNotIn("traction 'end'", done.stderr)
+            fields = last_fields(self.folder / name)
+            x, stress = fields["position"][:, 0], fields["cauchy_stress"][:, 0]
+            np.testing.assert_allclose(x.max() + fields["volume"][x.argmax()] / 2, 9.6 * np.exp(-0.3), rtol=2e-3)
+            np.testing.assert_allclose(stress, -300, rtol=0.015)
+            told = self.summary(name)["tractions"][0]
+            self.assertNotIn("lost_at_step", told)
+            self.assertAlmostEqual(told["full_force"][0] / -300, 1, delta=0.01)
+
+    def test_both_engines_carry_it_to_the_same_nodes(self):
+        more = ("--set", "time.until_static.max_steps=900")
+        ends = []
+        for name in ("cell_lanes", "particles"):
+            told = self.run_scene(self.write(COLUMN), *engine(name), *INITIAL, *more, out=name)["tractions"][0]
+            self.assertNotIn("lost_at_step", told)
+            ends.append(last_fields(self.folder / name)["position"][:, 0])
+        np.testing.assert_allclose(*ends, rtol=1e-9)
+        self.assertLess(ends[0].max(), 9)  # nearly two cells away from where it began
 
     def test_resumed_runs_have_the_same_bits(self):
         scene = self.write(COLUMN)
         for name in ("cell_lanes", "particles"):
-            self.resume(str(scene.with_suffix("")), *engine(name), *INITIAL, pause=0.3)
+            self.resume(str(scene.with_suffix("")), *engine(name), *INITIAL, "--set",
+                        "time.until_static.max_steps=20000", pause=0.3)
 
     def test_where_it_does_not_belong(self):
         scene = self.write(COLUMN)
