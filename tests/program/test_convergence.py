@@ -82,13 +82,13 @@ class Convergence(StudyTest):
         self.assertAlmostEqual(start["largest_von_mises"], math.sqrt(1.5 * (squares - trace**2 / 3)), delta=1e-3)
         end = self.run_scene(scene, out="end")
         moved = last_fields(self.folder / "end")["displacement"]
-        self.assertEqual(end["largest_displacement"], max(math.hypot(*u) for u in moved))
+        self.assertAlmostEqual(end["largest_displacement"] / max(math.hypot(*u) for u in moved), 1, delta=1e-12)
         self.assertIn(f"largest displacement {end['largest_displacement']:.4g} m", vsb("run", scene, "--out", self.folder / "x").stdout)
 
     def test_plastic_strain_is_a_figure_of_bodies_that_yield(self):
         text = STUDY[:STUDY.index("case")].replace("static = true", "expect_static = false").replace("cylinder.toml", "yield-cylinder.toml")
-        text = text.replace("setting=accurate", "time.until_static.max_steps=200")
-        _, table = self.study(text + "case = [{ axis = 0.5, expect = { largest_equivalent_plastic_strain = { lowest = 0 } } }]\n")
+        text = text.replace('"published=", ', "").replace("setting=accurate", "time.until_static.max_steps=200")
+        _, table = self.study(text + "case = [{ axis = 0.5, expect = { largest_equivalent_plastic_strain = { lowest = 0 } } }]\n", out="plastic")
         self.assertEqual(self.line(table, "0.5", "largest_equivalent_plastic_strain")["verdict"], "pass")
         self.refuse(STUDY.replace("{ axis = 0.5 }", "{ axis = 0.5, expect = { largest_equivalent_plastic_strain = { lowest = 0 } } }"),
                     "no such figure")
