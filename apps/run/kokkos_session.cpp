@@ -24,6 +24,11 @@ namespace vsb::app {
 #if defined(VSB_HAS_THREADS)
 namespace {
 
+bool set_by_environment() {
+  const char* threads = std::getenv("OMP_NUM_THREADS");
+  return threads && threads[0] != '\0';
+}
+
 /// Kokkos keeps its threads in a table of this size (OpenMPInternal::MAX_THREAD_COUNT).
 int most_threads() {
   return std::min(512, omp_get_thread_limit());
@@ -36,7 +41,7 @@ void check_threads([[maybe_unused]] int threads) {
 #if !defined(VSB_HAS_THREADS)
   if (threads > 1) throw SceneError("--threads: this program was built for a backend without threads; use 1");
 #else
-  const bool by_environment = threads == 0 && std::getenv("OMP_NUM_THREADS");
+  const bool by_environment = threads == 0 && set_by_environment();
   const int asked = by_environment ? omp_get_max_threads() : threads, most = most_threads();
   if (asked > most)
     throw SceneError(
@@ -69,7 +74,7 @@ ThreadChoice choose_threads(int asked, [[maybe_unused]] const std::function<int(
   check_threads(asked);
 #if defined(VSB_HAS_THREADS)
   if (asked > 0) return as_asked(asked, "--threads");
-  if (std::getenv("OMP_NUM_THREADS")) return as_asked(omp_get_max_threads(), "OMP_NUM_THREADS");
+  if (set_by_environment()) return as_asked(omp_get_max_threads(), "OMP_NUM_THREADS");
   const int cores = std::min(omp_get_max_threads(), most_threads());
   if (cores == 1) return {1, "1 thread: there is 1 core"};
   const int particles = count_particles(), pay = particles / 10000;
@@ -92,7 +97,7 @@ ThreadChoice choose_threads(int asked, [[maybe_unused]] const std::function<int(
 void wait_gently([[maybe_unused]] char** argv) {
 #if defined(VSB_HAS_THREADS) && defined(__linux__) && !defined(__clang__)
   if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
-  setenv("GOMP_SPINCOUNT", "1000", 0);
+  setenv("GOMP_SPINCOUNT", "3000", 0);
   std::array<char, 4096> program{};  // its own name, not that of the link: it is what ps shows
   if (readlink("/proc/self/exe", program.data(), program.size() - 1) > 0) execv(program.data(), argv);
 #endif

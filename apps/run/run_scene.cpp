@@ -7,10 +7,12 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <optional>
 
 #include "run/interrupt.hpp"
 #include "run/progress.hpp"
+#include "run/rest_forecast.hpp"
 #include "run/run_balance.hpp"
 #include "run/run_parts.hpp"
 #include "run/run_static.hpp"
@@ -299,6 +301,49 @@ RunResult run(const Scene& scene, const RunOptions& options) {
   return {exit_not_static, figures};
 }
 
+/// Of all particles together, along an axis.
+double longest_extent(Simulation& simulation) {
+  Point low, high;
+  low.fill(std::numeric_limits<double>::infinity());
+  high.fill(-std::numeric_limits<double>::infinity());
+  simulation.read_particles()->for_each_range(field::position, [&](const Snapshot& s) {
+    for (size_t i = 0; i < s.position.size(); ++i) {
+      low[i % 3] = std::min(low[i % 3], s.position[i]);
+      high[i % 3] = std::max(high[i % 3], s.position[i]);
+    }
+  });
+  double extent = 0;
+  for (size_t i = 0; i < 3; ++i) extent = std::max(extent, high[i] - low[i]);
+  return extent;
+}
+
+/// What can be known of the end of a run that takes `per_step` s a step.
+void print_end(const Scene& scene, double extent, double per_step) {
+  const auto wall = [&](double steps) {
+    const double s = steps * per_step;
+    return s < 10 ? fmt::format("{:.2g} s", s) : duration_text(s);
+  };
+  const auto steps = static_cast<double>(scene.time.steps);
+  if (!scene.time.until_static) {
+    fmt::print("# estimated time {}\n", wall(steps));
+    return;
+  }
+  const double loaded = std::ceil(loads_settled_at(scene) / scene.time.dt);
+  const char* whose = scene.removal ? "every stage" : "the run";
+  fmt::print("# estimated time {} to step {:.0f}, from which on the loads are constant\n", wall(loaded),
+             loaded);
+  if (const auto rest = forecast_rest(scene, extent, loaded))
+    fmt::print(
+        "# rest is expected from step {:.2g} to {:.2g} ({} to {}), by method.damping and the vibrations of a "
+        "compact body of {:.3g} m; slender ones take longer\n",
+        std::min(rest->earliest, steps), std::min(rest->latest, steps), wall(std::min(rest->earliest, steps)),
+        wall(std::min(rest->latest, steps)), extent);
+  else
+    fmt::print("# when it comes to rest cannot be known: method.damping = 0\n");
+  fmt::print("# time.until_static.max_steps = {} ends {} in any case ({})\n", scene.time.steps, whose,
+             wall(steps));
+}
+
 }  // namespace
 
 RunResult run_scene(const Scene& scene, const RunOptions& options) {
@@ -337,6 +382,8 @@ void check_scene(const Scene& scene) {
   print_resultant(scene, simulation->balance_under_loads_at(loaded), "#   ");
   // The rate is measured: a few steps of the scene itself, the first one (which sorts) left out. Not more
   // than a hundred: what a scene does in the long run, such as fly away, is not the question here.
+  const double extent = longest_extent(*simulation);
+  const int particles = simulation->particle_count();
   simulation->advance(1);
   const auto begin = Clock::now();
   long long made = 0;
@@ -345,13 +392,10 @@ void check_scene(const Scene& scene) {
     ++made;
   } while (made < 100 && seconds_since(begin) < 0.2);
   const double per_step = seconds_since(begin) / static_cast<double>(made);
-  const double whole = per_step * static_cast<double>(scene.time.steps);
-  fmt::print("# estimated time {} ({:.3g} ns per particle and step)\n\n",
-             scene.time.until_static
-                 ? fmt::format("at most {:.3g} s, {:.3g} s per 1000 steps", whole, 1000 * per_step)
-                 : fmt::format("{:.3g} s", whole),
-             1e9 * per_step / simulation->particle_count());
-  fmt::print("{}", scene.resolved);
+  fmt::print("# {:.3g} s per 1000 steps ({:.3g} ns per particle and step)\n", 1000 * per_step,
+             1e9 * per_step / particles);
+  print_end(scene, extent, per_step);
+  fmt::print("\n{}", scene.resolved);
 }
 
 }  // namespace vsb::app

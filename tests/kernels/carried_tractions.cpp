@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// Tractions that particles carry: where they act, in both engines, as a body moves on through the grid.
+#include <set>
+
 #include "both_engines.hpp"
 
 using namespace vsb;

@@ -383,6 +383,24 @@ class Threads(ProgramTest):
         self.assertFalse((self.folder / "c").exists())
         self.assertEqual(run("--threads", 512).returncode, 0)
 
+    def test_the_screen_says_how_many_and_why(self):
+        one = vsb("run", SCENES / "column.toml", "--out", self.folder / "c", "--set", "time.steps=10", environment={"OMP_NUM_THREADS": ""})
+        self.assertRegex(one.stdout.splitlines()[1], r"^1 thread: ")
+        two = vsb("run", SCENES / "column.toml", "--out", self.folder / "d", "--set", "time.steps=10", "--threads", 2)
+        self.assertRegex(two.stdout.splitlines()[1], r"^2 threads, by --threads(; \d+\.\d of \d+ cores? are idle, so that fewer may be faster)?$")
+
+
+class Expected(ProgramTest):
+    def test_check_foresees_the_step_of_rest(self):
+        for scene, *more in (("cylinder", "--set", "grid.spacing=0.5"), ("yield-cylinder",)):
+            text = vsb("check", SCENES / f"{scene}.toml", *more).stdout
+            loaded = int(re.search(r"# estimated time \S.* to step (\d+), from which on the loads are constant", text)[1])
+            first, last = (float(x) for x in re.search(r"# rest is expected from step (\S+) to (\S+) \(", text).groups())
+            self.assertIn("# time.until_static.max_steps = ", text)
+            steps = self.run_scene(scene, *more)["steps"]
+            self.assertTrue(loaded < first < steps < last < 20 * steps, (scene, loaded, first, steps, last))
+        self.assertIn("cannot be known: method.damping = 0", vsb("check", SCENES / "cylinder.toml", "--set", "method.damping=0.0").stdout)
+
 
 if __name__ == "__main__":
     unittest.main()
