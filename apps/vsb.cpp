@@ -152,7 +152,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "vsb: {}\n", error.what());
     return exit_input;
   } catch (const SetupError& error) {
-    fmt::print(stderr, "vsb: {}: {}\n", scene_path, error.what());
+    fmt::print(stderr, "vsb: {}: {}\n", error.where.empty() ? scene_path : error.where, error.what());
     return exit_input;
   } catch (const Diverged& error) {
     fmt::print(stderr, "vsb: diverged {}\n", error.what());

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace vsb::app {
 
@@ -75,52 +76,89 @@ void cut_simplex(const Region& region, const std::vector<Point>& inside, const s
   }
 }
 
+/// A sampling interval by its number in each direction.
+using Interval = std::array<size_t, 3>;
+
+/// Intervals first, ..., last - 1 in each direction.
+struct IntervalBlock {
+  Interval first, last;
+};
+
+/// The intervals that the surface may cross, along x first: blocks of them are halved until they lie in the
+/// region as a whole, not at all, or are one interval. The work follows the surface, not the grid.
+template <class Place>
+std::vector<Interval> crossed_intervals(const Region& region, const SurfaceBox& box, const Place& place) {
+  const auto d = static_cast<size_t>(box.dimension);
+  IntervalBlock all{{0, 0, 0}, {1, 1, 1}};
+  for (size_t i = 0; i < d; ++i) all.last[i] = static_cast<size_t>(box.intervals[i]);
+  std::vector<Interval> crossed;
+  std::vector<std::pair<IntervalBlock, Region>> blocks{{all, region}};
+  while (!blocks.empty()) {
+    const auto [block, parts] = std::move(blocks.back());
+    blocks.pop_back();
+    AxisBox around{place(block.first), place(block.last)};
+    for (size_t i = 0; i < d; ++i) {  // the surface may lie in the face of an interval
+      around.lower[i] -= 1e-3 * box.interval[i];
+      around.upper[i] += 1e-3 * box.interval[i];
+    }
+    Region within = parts.within(around);
+    if (within.is_empty() || within.is_everywhere()) continue;
+    size_t longest = 0;
+    const auto length = [&, &at = block](size_t i) { return at.last[i] - at.first[i]; };
+    for (size_t i = 1; i < d; ++i)
+      if (length(i) > length(longest)) longest = i;
+    if (length(longest) == 1) {
+      crossed.push_back(block.first);
+      continue;
+    }
+    auto lower = block, upper = block;
+    lower.last[longest] = upper.first[longest] = block.first[longest] + length(longest) / 2;
+    blocks.emplace_back(upper, within);
+    blocks.emplace_back(lower, std::move(within));
+  }
+  std::sort(crossed.begin(), crossed.end(), [](const Interval& a, const Interval& b) {
+    return std::lexicographical_compare(a.rbegin(), a.rend(), b.rbegin(), b.rend());
+  });
+  return crossed;
+}
+
 }  // namespace
 
 std::vector<SurfacePiece> surface_pieces(const Region& region, const SurfaceBox& box) {
   const auto d = static_cast<size_t>(box.dimension);
-  std::array<size_t, 3> points{1, 1, 1};
-  for (size_t i = 0; i < d; ++i) points[i] = static_cast<size_t>(box.intervals[i]) + 1;
-  const auto place = [&](const std::array<size_t, 3>& ijk) {
+  const auto place = [&](const Interval& ijk) {
     Point x{};
     for (size_t i = 0; i < d; ++i) x[i] = box.lower[i] + static_cast<double>(ijk[i]) * box.interval[i];
     return x;
   };
-  const auto index = [&](const std::array<size_t, 3>& ijk) {
-    return (ijk[2] * points[1] + ijk[1]) * points[0] + ijk[0];
-  };
-  std::vector<char> is_inside(points[0] * points[1] * points[2]);
-  std::array<size_t, 3> at{};
-  for (at[2] = 0; at[2] < points[2]; ++at[2])
-    for (at[1] = 0; at[1] < points[1]; ++at[1])
-      for (at[0] = 0; at[0] < points[0]; ++at[0]) is_inside[index(at)] = region(place(at)) ? 1 : 0;
-
   // Kuhn's triangulation: one simplex for each order of the axes; neighbouring intervals fit together.
   std::vector<SurfacePiece> pieces;
-  std::array<size_t, 3> last{1, 1, 1};
-  for (size_t i = 0; i < d; ++i) last[i] = points[i] - 1;
-  for (at[2] = 0; at[2] < last[2]; ++at[2])
-    for (at[1] = 0; at[1] < last[1]; ++at[1])
-      for (at[0] = 0; at[0] < last[0]; ++at[0]) {
-        bool mixed = false;
-        for (size_t corner = 1; corner < size_t(1) << d; ++corner) {
-          auto c = at;
-          for (size_t i = 0; i < d; ++i) c[i] += corner >> i & 1;
-          mixed = mixed || is_inside[index(c)] != is_inside[index(at)];
+  for (const Interval& at : crossed_intervals(region, box, place)) {
+    bool is_inside[8];  // [corner]: bit i: upper in direction i
+    bool mixed = false;
+    for (size_t corner = 0; corner < size_t(1) << d; ++corner) {
+      auto c = at;
+      for (size_t i = 0; i < d; ++i) c[i] += corner >> i & 1;
+      is_inside[corner] = region(place(c));
+      mixed = mixed || is_inside[corner] != is_inside[0];
+    }
+    if (!mixed) continue;
+    std::vector<size_t> order(d);
+    std::iota(order.begin(), order.end(), size_t(0));
+    do {
+      std::vector<Point> inside, outside;
+      auto c = at;
+      size_t corner = 0;
+      for (size_t k = 0; k <= d; ++k) {
+        if (k > 0) {
+          ++c[order[k - 1]];
+          corner |= size_t(1) << order[k - 1];
         }
-        if (!mixed) continue;
-        std::vector<size_t> order(d);
-        std::iota(order.begin(), order.end(), size_t(0));
-        do {
-          std::vector<Point> inside, outside;
-          auto c = at;
-          for (size_t k = 0; k <= d; ++k) {
-            if (k > 0) ++c[order[k - 1]];
-            (is_inside[index(c)] ? inside : outside).push_back(place(c));
-          }
-          if (!inside.empty() && !outside.empty()) cut_simplex(region, inside, outside, pieces);
-        } while (std::next_permutation(order.begin(), order.end()));
+        (is_inside[corner] ? inside : outside).push_back(place(c));
       }
+      if (!inside.empty() && !outside.empty()) cut_simplex(region, inside, outside, pieces);
+    } while (std::next_permutation(order.begin(), order.end()));
+  }
   return pieces;
 }
 

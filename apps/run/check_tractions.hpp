@@ -28,16 +28,22 @@ void check_tractions(const Scene& scene, const Basis& basis, const Occupancy<Dev
   for (size_t k = 0; k < scene.tractions.size(); ++k) {
     if (acting >> k & 1u) continue;
     if (!(loads.on_nodes() >> k & 1u))
-      throw SetupError(fmt::format(
-          "traction '{}' finds no surface of a body{}, so it would load nothing: check its 'surface'",
-          scene.tractions[k].name,
-          scene.tractions[k].imposition == Imposition::nodal ? " that follows faces of cells" : ""));
-    throw SetupError(fmt::format(
-        "traction '{}' finds no boundary node, so it would load nothing. A boundary node belongs to a cell "
-        "without particles or to one that touches such a cell; leave at least one empty cell beyond the "
-        "loaded boundary (a smaller grid spacing, or a larger grid), or set method.fill_criterion, and check "
-        "the traction's 'surface'",
-        scene.tractions[k].name));
+      throw SetupError(
+          scene.tractions[k].where,
+          fmt::format(
+              "traction '{}' finds no surface of a body{}, so it would load nothing: check its 'surface'",
+              scene.tractions[k].name,
+              scene.tractions[k].imposition == Imposition::nodal ? " that follows faces of cells" : ""));
+    throw SetupError(
+        scene.tractions[k].where,
+        fmt::format(
+            "traction '{}' finds no boundary node, so it would load nothing. A boundary node belongs to a "
+            "cell "
+            "without particles or to one that touches such a cell; leave at least one empty cell beyond the "
+            "loaded boundary (a smaller grid spacing, or a larger grid), or set method.fill_criterion, and "
+            "check "
+            "the traction's 'surface'",
+            scene.tractions[k].name));
   }
   const Point origin = local_origin(scene);
   for (size_t p = 0; p < placed.position.size(); ++p) {
@@ -50,11 +56,14 @@ void check_tractions(const Scene& scene, const Basis& basis, const Occupancy<Dev
         const auto& faces = scene.faces.fixed[static_cast<size_t>(i)];
         const bool lower = ijk[i] == 0 && faces[0] == 0,
                    upper = ijk[i] == basis.grid.cells[i] && faces[1] == 0;
-        if (lower || upper)
-          throw SetupError(fmt::format(
-              "a body reaches the open face {}_{} of the grid, where a traction is declared: leave at least "
-              "one empty cell between them, or give the face a condition, or the traction another 'surface'",
-              scene.grid.axis_name(static_cast<size_t>(i)), lower ? "min" : "max"));
+        if (!lower && !upper) continue;
+        const auto& body = body_of(scene, placed, static_cast<size_t>(&x - placed.position.data()));
+        throw SetupError(body.where, fmt::format("body '{}' reaches the open face {}_{} of the grid, where a "
+                                                 "traction is declared: leave at least "
+                                                 "one empty cell between them, or give the face a condition, "
+                                                 "or the traction another 'surface'",
+                                                 body.name, scene.grid.axis_name(static_cast<size_t>(i)),
+                                                 lower ? "min" : "max"));
       }
     }
   }

@@ -68,12 +68,25 @@ bool endless(const Scene& scene, const BodySpec& body, Point q, const Face& face
 }
 
 [[noreturn]] void throw_cut_off(const Scene& scene, const BodySpec& body, const Face& face, const Point& x) {
-  throw SetupError(fmt::format(
-      "body '{}' reaches out of the grid at the open face {}_{}, to {}, and would "
-      "be cut off "
-      "there: make the grid larger or the body smaller, or, for a symmetry plane or a support, give the "
-      "face a condition",
-      body.name, scene.grid.axis_name(face.axis), face.side == 0 ? "min" : "max", place_text(scene, x)));
+  throw SetupError(
+      body.where,
+      fmt::format(
+          "body '{}' reaches out of the grid at the open face {}_{}, to {}, and would "
+          "be cut off "
+          "there: make the grid larger or the body smaller, or, for a symmetry plane or a support, give the "
+          "face a condition",
+          body.name, scene.grid.axis_name(face.axis), face.side == 0 ? "min" : "max", place_text(scene, x)));
+}
+
+/// Whether the body's bounds lie within every open face of the grid.
+bool ends_in_grid(const Scene& scene, const BodySpec& body) {
+  if (scene.grid.polar) return false;  // its faces are not those of its bounding box
+  const AxisBox bounds = body.region.bounds(), grid = bounding_box(scene.grid, scene.dimension);
+  for (size_t i = 0; i < static_cast<size_t>(scene.dimension); ++i)
+    if ((scene.faces.fixed[i][0] == 0 && bounds.lower[i] < grid.lower[i]) ||
+        (scene.faces.fixed[i][1] == 0 && bounds.upper[i] > grid.upper[i]))
+      return false;
+  return true;
 }
 
 /// Of a cut lattice every share beyond an open face counts, also that of a box with its centre in the grid.
@@ -101,13 +114,15 @@ void refuse_shares_beyond(const Scene& scene, const BodySpec& body) {
 }  // namespace
 
 void refuse_cut_bodies(const Scene& scene) {
-  const Scene larger = with_a_cell_beyond(scene);
+  std::optional<Scene> larger;
   for (const auto& body : scene.bodies) {
+    if (ends_in_grid(scene, body)) continue;
     if (body.boundary != BoundaryBoxes::keep) {
       refuse_shares_beyond(scene, body);
       continue;
     }
-    for_each_lattice_point(larger, body, [&](const LatticePoint& point) {
+    if (!larger) larger = with_a_cell_beyond(scene);
+    for_each_lattice_point(*larger, body, [&](const LatticePoint& point) {
       const Point q = logical_coordinates(scene.grid, point.x);
       const auto face = face_passed(scene, q);
       if (!face || scene.faces.fixed[face->axis][face->side] != 0 || !body.region(point.x) ||

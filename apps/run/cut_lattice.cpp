@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "run/box_share.hpp"
-#include "run/lattice_points.hpp"
 
 namespace vsb::app {
 
@@ -98,7 +97,7 @@ class ShareVisitor {
   }
   void add(const LatticeBox& box, const BoxShare& share) {
     if (share.volume > least_share * volume_of(box.whole, dimension_))
-      take({share.centroid, share.volume, box.within});
+      take({share.centroid, share.volume, box.within, {}, false});
     else
       volume_.dropped += share.volume;
   }
@@ -120,7 +119,7 @@ CutVolume for_each_lattice_share(const Scene& scene, const BodySpec& body, const
                                  const std::function<void(const LatticeShare&)>& visit) {
   const auto d = static_cast<size_t>(scene.dimension);
   const UniformLattice lattice = uniform_lattice(scene.grid, body.lattice);
-  const LatticeRange range = lattice_range(lattice, limits, scene.dimension);
+  const LatticeRange range = lattice_range(lattice, body, limits, scene.dimension);
   double volume = 1;
   for (size_t i = 0; i < d; ++i) volume *= lattice.spacing[i];
   ShareVisitor visitor(scene, body, limits, visit);
@@ -128,7 +127,7 @@ CutVolume for_each_lattice_share(const Scene& scene, const BodySpec& body, const
   for (at[2] = range.first[2]; at[2] < range.last[2]; ++at[2])
     for (at[1] = range.first[1]; at[1] < range.last[1]; ++at[1])
       for (at[0] = range.first[0]; at[0] < range.last[0]; ++at[0]) {
-        LatticeShare whole{{}, volume, {}};
+        LatticeShare whole{{}, volume, {}, at, true};
         for (size_t i = 0; i < d; ++i) {
           whole.position[i] = lattice.point(at, i);
           whole.box.lower[i] = lattice.origin[i] + static_cast<double>(at[i]) * lattice.spacing[i];

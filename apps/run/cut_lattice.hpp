@@ -8,6 +8,7 @@
 
 #include <functional>
 
+#include "run/lattice_points.hpp"
 #include "run/place_particles.hpp"
 #include "scene/scene.hpp"
 
@@ -21,6 +22,8 @@ struct LatticeShare {
   Point position;  ///< m
   double volume;   ///< m^3
   AxisBox box;     ///< the box, or its half, within the limits
+  LatticeIndex index{};
+  bool whole = false;  ///< the interval of that index in the lattice, uncut
 };
 
 /// Visits the shares of a body's boxes, along x first, the halves of one box in the same order. Boxes are cut

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "run/loads.hpp"
+#include "run/open_faces.hpp"
 
 namespace vsb::app {
 
@@ -114,7 +115,7 @@ ThinWall thin_wall(const Scene& scene, const OccupiedCells& grid) {
 
 std::vector<std::string> field_advice(const Scene& scene, const PlacedParticles& placed,
                                       const OccupiedCells& grid) {
-  std::vector<std::string> advice;
+  std::vector<std::string> advice = open_face_advice(scene, placed);
   const auto box = bounding_box(scene.grid, scene.dimension);
   const auto spurious = spurious_traction(scene, placed);
   for (const auto& traction : scene.tractions) {

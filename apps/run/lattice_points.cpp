@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/lattice_points.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace vsb::app {
@@ -27,11 +28,12 @@ double random_number(std::uint64_t seed, const Index& index, size_t direction) {
 
 using Visit = std::function<void(const LatticePoint&)>;
 
-void visit_points(const UniformLattice& lattice, const Scene& scene, const Jitter& jitter,
+void visit_points(const UniformLattice& lattice, const Scene& scene, const BodySpec& body,
                   const Visit& visit) {
   const auto d = static_cast<size_t>(scene.dimension);
+  const Jitter& jitter = body.jitter;
   const auto [first, last] =
-      lattice_range(lattice, bounding_box(scene.grid, scene.dimension), scene.dimension);
+      lattice_range(lattice, body, bounding_box(scene.grid, scene.dimension), scene.dimension);
   double volume = 1;
   for (size_t i = 0; i < d; ++i) volume *= lattice.spacing[i];
   for (long long k = first[2]; k < last[2]; ++k)
@@ -48,23 +50,52 @@ void visit_points(const UniformLattice& lattice, const Scene& scene, const Jitte
       }
 }
 
-void visit_points(const CellLattice& lattice, const Scene& scene, const Jitter& jitter, const Visit& visit) {
+/// The cells of a mapped grid that a body may reach, and one more on either side.
+LatticeRange cells_around(const GridSpec& grid, int dimension, const AxisBox& bounds) {
+  LatticeRange range;
+  for (size_t i = 0; i < static_cast<size_t>(dimension); ++i) {
+    double low = bounds.lower[i], high = bounds.upper[i];
+    if (grid.polar && i == 0) {
+      double nearest[2], farthest[2];
+      for (size_t c = 0; c < 2; ++c) {
+        nearest[c] = std::max({bounds.lower[c] - grid.center[c], 0.0, grid.center[c] - bounds.upper[c]});
+        farthest[c] = std::max(grid.center[c] - bounds.lower[c], bounds.upper[c] - grid.center[c]);
+      }
+      low = std::hypot(nearest[0], nearest[1]);
+      high = std::hypot(farthest[0], farthest[1]);
+    }
+    range.last[i] = grid.cells[i];
+    if (grid.polar && i == 1) continue;  // all around
+    const auto& nodes = grid.coordinates[i];
+    const auto node = [&](double x) {
+      return std::lower_bound(nodes.begin(), nodes.end(), x) - nodes.begin();
+    };
+    range.first[i] = std::max<long long>(0, node(low) - 2);
+    range.last[i] = std::min<long long>(grid.cells[i], node(high) + 1);
+  }
+  return range;
+}
+
+void visit_points(const CellLattice& lattice, const Scene& scene, const BodySpec& body, const Visit& visit) {
   if (scene.grid.mapped()) {
-    Index last{1, 1, 1};
-    for (size_t i = 0; i < static_cast<size_t>(scene.dimension); ++i)
-      last[i] = static_cast<long long>(scene.grid.cells[i]) * lattice.particles_per_cell[i];
-    for (long long k = 0; k < last[2]; ++k)
-      for (long long j = 0; j < last[1]; ++j)
-        for (long long i = 0; i < last[0]; ++i) {
-          const auto share = cell_share(scene.grid, scene.dimension, lattice.particles_per_cell, {i, j, k});
+    const auto& per_cell = lattice.particles_per_cell;
+    auto [first, last] = cells_around(scene.grid, scene.dimension, body.region.bounds());
+    for (size_t i = 0; i < static_cast<size_t>(scene.dimension); ++i) {
+      first[i] *= per_cell[i];
+      last[i] *= per_cell[i];
+    }
+    for (long long k = first[2]; k < last[2]; ++k)
+      for (long long j = first[1]; j < last[1]; ++j)
+        for (long long i = first[0]; i < last[0]; ++i) {
+          const auto share = cell_share(scene.grid, scene.dimension, per_cell, {i, j, k});
           visit({share.position, share.volume, {}});
         }
     return;
   }
-  visit_points(uniform_lattice(scene.grid, lattice), scene, jitter, visit);
+  visit_points(uniform_lattice(scene.grid, lattice), scene, body, visit);
 }
 
-void visit_points(const ConcentricLattice& lattice, const Scene& scene, const Jitter&, const Visit& visit) {
+void visit_points(const ConcentricLattice& lattice, const Scene& scene, const BodySpec&, const Visit& visit) {
   const double dr = (lattice.outer_radius - lattice.inner_radius) / lattice.rings;
   const double dtheta = (lattice.last_angle - lattice.first_angle) / lattice.per_ring;
   const double dz = scene.dimension == 3 ? (lattice.upper - lattice.lower) / lattice.layers : 1;
@@ -91,19 +122,27 @@ UniformLattice uniform_lattice(const GridSpec& grid, const Lattice& lattice) {
   return uniform;
 }
 
-LatticeRange lattice_range(const UniformLattice& lattice, const AxisBox& box, int dimension) {
+LatticeRange lattice_range(const UniformLattice& lattice, const BodySpec& body, const AxisBox& box,
+                           int dimension) {
+  const AxisBox bounds = body.region.bounds();
   LatticeRange range;
   for (size_t i = 0; i < static_cast<size_t>(dimension); ++i) {
-    const double begin = (box.lower[i] - lattice.origin[i]) / lattice.spacing[i];
-    range.first[i] = static_cast<long long>(std::floor(begin));
-    range.last[i] =
-        static_cast<long long>(std::ceil(begin + (box.upper[i] - box.lower[i]) / lattice.spacing[i]));
+    const auto intervals = [&](double x) { return (x - lattice.origin[i]) / lattice.spacing[i]; };
+    const double begin = intervals(box.lower[i]);
+    const double first = std::floor(begin);
+    const double last = std::ceil(begin + (box.upper[i] - box.lower[i]) / lattice.spacing[i]);
+    // Round-off must not leave out the interval that ends at the body's bound: one more on either side.
+    const double from = std::max(first, std::floor(intervals(bounds.lower[i])) - 1);
+    const double to = std::min(last, std::ceil(intervals(bounds.upper[i])) + 1);
+    if (!(from < to)) return {{0, 0, 0}, {0, 0, 0}};
+    range.first[i] = static_cast<long long>(from);
+    range.last[i] = static_cast<long long>(to);
   }
   return range;
 }
 
 void for_each_lattice_point(const Scene& scene, const BodySpec& body, const Visit& visit) {
-  std::visit([&](const auto& lattice) { visit_points(lattice, scene, body.jitter, visit); }, body.lattice);
+  std::visit([&](const auto& lattice) { visit_points(lattice, scene, body, visit); }, body.lattice);
 }
 
 }  // namespace vsb::app

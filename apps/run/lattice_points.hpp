@@ -18,8 +18,9 @@ struct LatticeRange {
 
 /// A cell lattice of a uniform grid, or a uniform lattice, as the latter.
 UniformLattice uniform_lattice(const GridSpec& grid, const Lattice& lattice);
-/// The intervals of a lattice that touch a box.
-LatticeRange lattice_range(const UniformLattice& lattice, const AxisBox& box, int dimension);
+/// The intervals of a body's lattice that touch a box and the body's bounds.
+LatticeRange lattice_range(const UniformLattice& lattice, const BodySpec& body, const AxisBox& box,
+                           int dimension);
 
 struct LatticePoint {
   Point x;        ///< m
@@ -28,9 +29,9 @@ struct LatticePoint {
 };
 
 /// Visits the lattice points of a body in a fixed order: for cell and uniform lattices those in the box of
-/// the grid, along x first; for concentric ones all, along the angle first, then ring by ring and layer by
-/// layer. A point's shift depends on its place in the lattice and the seed alone, not on the points visited
-/// before.
+/// the grid and in the body's bounds, along x first; for concentric ones all, along the angle first, then
+/// ring by ring and layer by layer. A point's shift depends on its place in the lattice and the seed alone,
+/// not on the points visited before.
 void for_each_lattice_point(const Scene& scene, const BodySpec& body,
                             const std::function<void(const LatticePoint&)>& visit);
 

@@ -136,11 +136,11 @@ std::vector<LoadedPoint> loaded_points(const Scene& scene, const PlacedParticles
       for_each_piece(scene, k, [&](const SurfacePiece& piece) {
         const int p = nearest(piece.position);
         if (p < 0)
-          throw SetupError(
-              fmt::format("traction '{}' has no material point within {:.6g} m of {} "
-                          "on its surface: "
-                          "check its 'layer'",
-                          traction.name, reach, place_text(scene, piece.position)));
+          throw SetupError(traction.where,
+                           fmt::format("traction '{}' has no material point within {:.6g} m of {} "
+                                       "on its surface: "
+                                       "check its 'layer'",
+                                       traction.name, reach, place_text(scene, piece.position)));
         for (size_t i = 0; i < 3; ++i) area[p][i] += piece.area[i];
       });
       for (const auto& [p, sum] : area)

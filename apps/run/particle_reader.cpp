@@ -55,10 +55,12 @@ Snapshot ParticleReader::all(unsigned fields) const {
   return whole;
 }
 
-SceneReader::SceneReader(const Scene& scene, const std::vector<int>& ids, std::vector<PlacedBody> bodies,
+SceneReader::SceneReader(const Scene& scene, const std::vector<CutStarts>& starts,
+                         const std::vector<int>& ids, std::vector<PlacedBody> bodies,
                          std::unique_ptr<FieldSource> source)
     : scene_(scene),
       origin_(local_origin(scene)),
+      starts_(starts),
       ids_(ids),
       bodies_(std::move(bodies)),
       source_(std::move(source)) {}
@@ -122,7 +124,7 @@ void SceneReader::visit(unsigned fields, const std::function<void(Snapshot&)>& w
     start.clear();
     first += size;
   };
-  for_each_start(scene_, [&](const Point& x) {
+  for_each_start(scene_, starts_, [&](const Point& x) {
     const size_t next = first + start.size() / 3;
     if (next >= count || number++ != id_of(next)) return;
     for (size_t i = 0; i < 3; ++i) {  // in the precision in which the particle began

@@ -76,12 +76,13 @@ class FieldSource {
   virtual void read_flags(size_t first, std::vector<unsigned char>& to) = 0;
 };
 
-/// Reads the particles of a scene. Where they were at the start is found anew from the scene.
+/// Reads the particles of a scene. Where they were at the start is found anew from the scene, but for cut
+/// lattices.
 class SceneReader final : public ParticleReader {
  public:
   /// `ids`: of those that are left; empty where all are.
-  SceneReader(const Scene& scene, const std::vector<int>& ids, std::vector<PlacedBody> bodies,
-              std::unique_ptr<FieldSource> source);
+  SceneReader(const Scene& scene, const std::vector<CutStarts>& starts, const std::vector<int>& ids,
+              std::vector<PlacedBody> bodies, std::unique_ptr<FieldSource> source);
 
  private:
   void visit(unsigned fields, const std::function<void(Snapshot&)>& work) const override;
@@ -92,6 +93,7 @@ class SceneReader final : public ParticleReader {
 
   const Scene& scene_;
   Point origin_;  ///< run/local_origin.hpp
+  const std::vector<CutStarts>& starts_;
   const std::vector<int>& ids_;
   std::vector<PlacedBody> bodies_;
   std::unique_ptr<FieldSource> source_;

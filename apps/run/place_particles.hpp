@@ -7,6 +7,7 @@
 #include <functional>
 #include <vector>
 
+#include "run/lattice_points.hpp"
 #include "scene/scene.hpp"
 
 namespace vsb::app {
@@ -29,10 +30,32 @@ struct MomentFit {
   double volume_before = 0, volume_after = 0;  ///< of the fitted bodies' particles, m^3
 };
 
+/// Where the particles of a body with a cut lattice begin, so that it is cut once: whole boxes side by side
+/// by the index of the first one, shares of boxes by their place.
+class CutStarts {
+ public:
+  CutStarts() = default;
+  explicit CutStarts(const UniformLattice& lattice) : lattice_(lattice) {}
+  void add_whole(const LatticeIndex& box);
+  void add_share(const Point& x);
+  /// In the order in which they were added.
+  void for_each(int dimension, const std::function<void(const Point&)>& visit) const;
+
+ private:
+  struct Run {
+    LatticeIndex first;
+    long long whole, shares;  ///< so many whole boxes, then so many shares
+  };
+  UniformLattice lattice_;
+  std::vector<Run> runs_;
+  std::vector<Point> shares_;
+};
+
 struct PlacedParticles {
   std::vector<Point> position;
   std::vector<double> volume;
   std::vector<PlacedBody> bodies;
+  std::vector<CutStarts> starts;  ///< [body]; of those with cut lattices
   CutVolume cut;
   MomentFit moment_fit;
 };
@@ -50,7 +73,12 @@ struct MassCentre {
 };
 MassCentre mass_centre(const Scene& scene, const PlacedParticles& placed);
 
-/// Calls visit(x) for all of them in order, x being where they are placed, and keeps none.
-void for_each_start(const Scene& scene, const std::function<void(const Point&)>& visit);
+/// The body of a particle.
+const BodySpec& body_of(const Scene& scene, const PlacedParticles& placed, size_t particle);
+
+/// Calls visit(x) for all of them in order, x being where they were placed. `starts`: of PlacedParticles; the
+/// points of other lattices are found anew, so that nobody need keep them.
+void for_each_start(const Scene& scene, const std::vector<CutStarts>& starts,
+                    const std::function<void(const Point&)>& visit);
 
 }  // namespace vsb::app

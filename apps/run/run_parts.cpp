@@ -36,12 +36,16 @@ double loads_settled_at(const Scene& scene) {
 void refuse_unsettled_loads(const Scene& scene, const std::string& who) {
   for (const auto& traction : scene.tractions)
     if (!std::isfinite(traction.time.settled_at()))
-      throw SetupError(fmt::format(
-          "{}: traction '{}' is a sine, which never settles, so there is no final load", who, traction.name));
+      throw SetupError(
+          traction.where,
+          fmt::format("{}: traction '{}' is a sine, which never settles, so there is no final load", who,
+                      traction.name));
 }
 
 void print_advice(const Scene& scene, const Simulation& simulation) {
   for (const auto& advice : scene_advice(scene)) fmt::print(stderr, "vsb: warning: {}\n", advice);
+  for (const auto& advice : volume_advice(scene, simulation.body_volumes()))
+    fmt::print(stderr, "vsb: warning: {}\n", advice);
   for (const auto& advice : simulation.advice()) fmt::print(stderr, "vsb: warning: {}\n", advice);
 }
 
@@ -58,6 +62,7 @@ void take_state(RunFigures& figures, const Scene& scene, Simulation& simulation)
   figures.compared = comparison.figures;
   figures.state = state_figures(scene, *simulation.read_particles());
   figures.cut = simulation.cut_volume();
+  figures.volumes = simulation.body_volumes();
   figures.moment_fit = simulation.moment_fit();
   figures.particles = simulation.particle_count();
   figures.outflow = simulation.outflow();

@@ -281,6 +281,7 @@ RunResult run(const Scene& scene, const RunOptions& options) {
     take_state(figures, scene, *simulation);
   } else {
     figures.particles = simulation->particle_count();
+    figures.volumes = simulation->body_volumes();
   }
   if (left && left->all) figures.particles = 0;
   if (left && left->all) figures.mass = 0;
@@ -371,6 +372,7 @@ void check_scene(const Scene& scene) {
              simulation->boundary_nodes(), static_cast<double>(simulation->state_bytes()) / 1e6);
   const auto reason = simulation->particle_kernels_because();
   fmt::print("# steps on {}\n", reason.empty() ? "cell lanes" : "particle kernels: " + reason);
+  print_body_volumes(scene, simulation->body_volumes(), "# ");
   print_cut_volume(simulation->cut_volume(), "# ");
   print_moment_fit(scene, simulation->moment_fit(), "# ");
   const double settled = loads_settled_at(scene);

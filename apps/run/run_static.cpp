@@ -20,19 +20,24 @@ constexpr double small_strain = 5e-3;
 
 /// Refuses what only an explicit run can do.
 void refuse_moving_scenes(const Scene& scene) {
-  const auto refuse = [](const std::string& why) { throw SetupError("--static: " + why); };
+  const auto refuse = [](const std::string& why, const std::string& where = {}) {
+    throw SetupError(where, "--static: " + why);
+  };
   if (scene.single_precision) refuse("needs precision = \"double\"");
   refuse_unsettled_loads(scene, "--static");
   for (const auto& body : scene.bodies)
     if (is_plastic(body.material.law))
-      refuse(fmt::format(
-          "body '{}' may yield (its material.law), and a static solution is that of elastic bodies; run "
-          "without --static, with time.until_static",
-          body.name));
+      refuse(
+          fmt::format(
+              "body '{}' may yield (its material.law), and a static solution is that of elastic bodies; run "
+              "without --static, with time.until_static",
+              body.name),
+          body.where);
   for (const auto& body : scene.bodies)
     if (body.velocity.value != Point{} || body.velocity.gradient != std::array<Point, 3>{})
       refuse(
-          fmt::format("body '{}' has an initial velocity, of which a static state knows nothing", body.name));
+          fmt::format("body '{}' has an initial velocity, of which a static state knows nothing", body.name),
+          body.where);
 }
 
 double largest_displacement(const ParticleReader& particles) {

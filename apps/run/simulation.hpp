@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "run/body_volumes.hpp"
 #include "run/byte_stream.hpp"
 #include "run/leaving.hpp"
 #include "run/particle_reader.hpp"
@@ -22,6 +23,8 @@ namespace vsb::app {
 /// A scene that is well written but cannot be run as it stands.
 struct SetupError : std::runtime_error {
   using std::runtime_error::runtime_error;
+  SetupError(std::string at, const std::string& text) : std::runtime_error(text), where(std::move(at)) {}
+  std::string where;  ///< file:line:column of the table that is at fault; empty: the scene as a whole
 };
 
 /// A run that has become meaningless; the text names step, time, particle and field.
@@ -115,6 +118,8 @@ class Simulation {
   virtual int boundary_nodes() const = 0;
   /// Of the bodies with cut lattices, at the start.
   virtual CutVolume cut_volume() const = 0;
+  /// Of the bodies at the start.
+  virtual const std::vector<BodyVolume>& body_volumes() const = 0;
   virtual MomentFit moment_fit() const = 0;
   /// Of the boundary nodes of the moment; zeros without the filter.
   virtual VoidFilterReport void_filter() const = 0;

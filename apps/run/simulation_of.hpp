@@ -49,6 +49,8 @@ class SimulationOf final : public Simulation {
     const auto placed = place_particles(scene_);
     if (!scene.grid.mapped() && Basis::reach == 0) refuse_on_grid_lines(scene_, placed);
     placed_count_ = static_cast<int>(placed.position.size());
+    starts_ = placed.starts;
+    volumes_ = vsb::app::body_volumes(scene_, placed);
     cut_ = placed.cut;
     moment_fit_ = placed.moment_fit;
     near_ = to_local<Vector<Dim, Real>>(placed.position.front(), origin_);
@@ -88,6 +90,7 @@ class SimulationOf final : public Simulation {
   std::string particle_kernels_because() const override { return particle_kernels_because_; }
 
   CutVolume cut_volume() const override { return cut_; }
+  const std::vector<BodyVolume>& body_volumes() const override { return volumes_; }
   MomentFit moment_fit() const override { return moment_fit_; }
   VoidFilterReport void_filter() const override {
     if (!scene_.method.void_filter) return {};
@@ -242,7 +245,7 @@ class SimulationOf final : public Simulation {
       fields = std::make_unique<LentFields>(*this);
     std::vector<PlacedBody> bodies;
     for (const auto& body : bodies_) bodies.push_back({body.first, body.last});
-    auto reader = std::make_unique<SceneReader>(scene_, ids_, std::move(bodies), std::move(fields));
+    auto reader = std::make_unique<SceneReader>(scene_, starts_, ids_, std::move(bodies), std::move(fields));
     reader->outside = outside_;
     reader->step = step_;
     reader->time = time();
@@ -488,7 +491,7 @@ class SimulationOf final : public Simulation {
     ids_ = std::move(ids);
     int id = 0;
     if (first_goes)
-      for_each_start(scene_, [&](const Point& x) {
+      for_each_start(scene_, starts_, [&](const Point& x) {
         if (id++ == ids_.front()) near_ = to_local<Vector<Dim, Real>>(x, origin_);
       });
     if (all_anew) {
@@ -724,6 +727,8 @@ class SimulationOf final : public Simulation {
   Loads<Dim, Real> loads_;
   std::vector<Resultant> resultants_;  ///< of each traction at full load
   int placed_count_ = 0;               ///< particles at the start
+  std::vector<CutStarts> starts_;
+  std::vector<BodyVolume> volumes_;
   CutVolume cut_;
   MomentFit moment_fit_;
   std::vector<std::string> advice_;

@@ -113,6 +113,20 @@ bool is_count(const std::string& figure) {
 
 namespace {
 
+toml::array bodies_of(const Scene& scene, const std::vector<BodyVolume>& volumes) {
+  toml::array bodies;
+  for (size_t b = 0; b < volumes.size(); ++b) {
+    const auto& [particles, shape] = volumes[b];
+    const double density = scene.bodies[b].density;
+    bodies.push_back(toml::table{{"name", scene.bodies[b].name},
+                                 {"particle_volume", particles},
+                                 {"particle_mass", density * particles},
+                                 {"shape_volume", shape},
+                                 {"shape_mass", density * shape}});
+  }
+  return bodies;
+}
+
 /// Numbers of cells with all moments, with fewer, and of those left alone.
 std::array<int, 3> moment_cells(const Scene& scene, const MomentFit& fit) {
   const auto all = static_cast<size_t>(scene.dimension) + 1;
@@ -184,6 +198,7 @@ std::string summary_json(const Scene& scene, const RunFigures& f) {
     summary.insert("resultant", toml::table{{"load", f.share.load},
                                             {"net_force_share", f.share.net_force},
                                             {"net_torque_share", f.share.net_torque}});
+  summary.insert("bodies", bodies_of(scene, f.volumes));
   if (!f.left_grid.empty()) summary.insert("left_grid", f.left_grid);
   if (scene.faces.any_outflow()) {
     const auto& out = f.outflow;
@@ -277,6 +292,7 @@ void print_report(const Scene& scene, const RunFigures& f) {
   fmt::print("{} {}s in {:.3g} s: {:.4g} ns per particle and {}; peak memory {:.4g} MB\n",
              f.steps_timed + f.iterations, sweep, f.seconds, f.ns_per_particle_step(), sweep,
              static_cast<double>(peak_bytes()) / 1e6);
+  print_body_volumes(scene, f.volumes, "");
   print_cut_volume(f.cut, "");
   print_moment_fit(scene, f.moment_fit, "");
   if (scene.faces.any_outflow())

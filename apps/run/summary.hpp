@@ -26,6 +26,7 @@ struct RunFigures {
   bool found_static = false;
   int particles = 0, boundary_nodes = 0;
   size_t state_bytes = 0;
+  std::vector<BodyVolume> volumes;  ///< of the bodies at the start
   CutVolume cut;
   MomentFit moment_fit;
   VoidFilterReport void_filter;

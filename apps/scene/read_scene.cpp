@@ -36,6 +36,7 @@ BodySpec read_body(TableReader r, const Scene& scene, size_t number) {
   BodySpec body;
   r.allow_only({"name", "shape", "particles_per_cell", "lattice", "boundary", "jitter", "seed", "density",
                 "stress", "velocity", "material"});
+  body.where = location(r.source());
   body.name = r.text("name", fmt::format("body {}", number + 1));
   body.region = read_region(r, "shape", dimension, false);
   read_lattice(r, scene, body);
@@ -187,6 +188,7 @@ TractionSpec read_traction(TableReader r, const Scene& scene, size_t number, Tim
                                    "layer",         "points_per_cell", "time"};
   keys.insert(keys.end(), stress_field_keys.begin(), stress_field_keys.end());
   r.allow_only(keys);
+  traction.where = location(r.source());
   traction.name = r.text("name", fmt::format("traction {}", number + 1));
   traction.imposition = read_imposition(r);
   traction.field = read_stress_field(r, scene);

@@ -4,8 +4,8 @@
 #pragma once
 
 #include <array>
-#include <functional>
-#include <string>
+#include <limits>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -18,29 +18,76 @@ using Point = std::array<double, 3>;
 struct AxisBox {
   Point lower{}, upper{};
 };
+constexpr double no_end = std::numeric_limits<double>::infinity();
+constexpr AxisBox all_space{{-no_end, -no_end, -no_end}, {no_end, no_end, no_end}};
 
 /// The share of a box that lies in a region: nothing or everything, but for sets of no volume, or possibly
 /// some.
 enum class Overlap { none, some, all };
 
 /// A set of points. The answer for a box is safe: `none` and `all` are certain, however thin the region's
-/// features are; of boxes in between, some are called `some` that are not.
+/// features are; of boxes in between, some are called `some` that are not. Copies share what they consist of.
+/// One that nobody has made is empty.
 class Region {
  public:
-  using Contains = std::function<bool(const Point&)>;
-  using OverlapWith = std::function<Overlap(const AxisBox&)>;
-
   Region() = default;
-  Region(Contains contains, OverlapWith overlap)
-      : contains_(std::move(contains)), overlap_(std::move(overlap)) {}
+  /// A shape: whether it has a point, its overlap with a box, and its bounds.
+  template <class Contains, class OverlapWith>
+  Region(Contains contains, OverlapWith overlap, const AxisBox& bounds = all_space)
+      : operation_(Operation::shape),
+        shape_(std::make_shared<const ShapeOf<Contains, OverlapWith>>(std::move(contains), std::move(overlap),
+                                                                      bounds)) {}
 
-  bool operator()(const Point& x) const { return contains_(x); }
-  Overlap overlap(const AxisBox& box) const { return overlap_(box); }
+  bool operator()(const Point& x) const;
+  Overlap overlap(const AxisBox& box) const;
+  /// A box beyond which no point of the region lies; infinite where the shapes do not tell.
+  AxisBox bounds() const;
+  /// The region as it is in a box, but for sets of no volume, of the parts alone that have a say there. What
+  /// it is beyond the box means nothing.
+  Region within(const AxisBox& box) const;
+  bool is_empty() const { return operation_ == Operation::nothing; }
+  bool is_everywhere() const { return operation_ == Operation::everywhere; }
 
  private:
-  Contains contains_;
-  OverlapWith overlap_;
+  enum class Operation { nothing, everywhere, shape, sum, intersection, difference };
+  using Parts = std::vector<Region>;
+
+  struct Shape {
+    virtual ~Shape() = default;
+    virtual bool contains(const Point& x) const = 0;
+    virtual Overlap overlap(const AxisBox& box) const = 0;
+    virtual const AxisBox& bounds() const = 0;
+  };
+  template <class Contains, class OverlapWith>
+  class ShapeOf final : public Shape {
+   public:
+    ShapeOf(Contains contains, OverlapWith overlap, const AxisBox& bounds)
+        : contains_(std::move(contains)), overlap_(std::move(overlap)), bounds_(bounds) {}
+    bool contains(const Point& x) const override { return contains_(x); }
+    Overlap overlap(const AxisBox& box) const override { return overlap_(box); }
+    const AxisBox& bounds() const override { return bounds_; }
+
+   private:
+    Contains contains_;
+    OverlapWith overlap_;
+    AxisBox bounds_;
+  };
+
+  Region(Operation operation, Parts parts);
+  bool is_same(const Region& other) const;
+
+  Operation operation_ = Operation::nothing;
+  std::shared_ptr<const Shape> shape_;
+  std::shared_ptr<const Parts> parts_;  ///< those of a difference: of the first one the others are taken
+
+  friend Region everywhere();
+  friend Region union_of(std::vector<Region> parts);
+  friend Region intersection_of(std::vector<Region> parts);
+  friend Region difference_of(std::vector<Region> parts);
 };
+
+/// The points of both boxes; upper < lower where there are none.
+AxisBox common_box(const AxisBox& a, const AxisBox& b);
 
 Region everywhere();
 /// lower <= x <= upper in the first `dimension` coordinates.

@@ -42,6 +42,7 @@ struct BodySpec {
   MaterialSpec material{};
   Affine<Stress6> stress;
   Affine<Point> velocity;  ///< m/s
+  std::string where;       ///< file:line:column
 };
 
 /// Whether particles lie on rings or are jittered, so that sums over those of a cell are not exact.
@@ -70,6 +71,7 @@ struct TractionSpec {
   Region layer;              ///< which material points may carry the load
   int points_per_cell = 0;   ///< sampling of the surface, in each direction
   TimeFunction time;
+  std::string where;  ///< file:line:column
 };
 
 /// When a run counts as static.

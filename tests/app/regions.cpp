@@ -21,8 +21,35 @@ Point random_in(const AxisBox& box, Random& random) {
   return x;
 }
 
+/// No point of the region lies beyond its bounds, and within a box its parts there say what all of them say.
+void check_parts(const Region& region, int dimension) {
+  Random random(9);
+  const AxisBox bounds = region.bounds();
+  for (int n = 0; n < 400; ++n) {
+    AxisBox box;
+    for (size_t i = 0; i < static_cast<size_t>(dimension); ++i) {
+      box.lower[i] = random(-2, 2);
+      box.upper[i] = box.lower[i] + random(0.02, 1);
+    }
+    const Region within = region.within(box);
+    bool agree = true, bounded = true;
+    for (int k = 0; k < 20; ++k) {
+      const Point x = random_in(box, random);
+      agree = agree && region(x) == within(x);
+      for (size_t i = 0; i < 3 && region(x); ++i)
+        bounded = bounded && x[i] >= bounds.lower[i] && x[i] <= bounds.upper[i];
+    }
+    CHECK(agree);
+    CHECK(bounded);
+    const Overlap overlap = region.overlap(box);
+    CHECK(within.is_empty() == (overlap == Overlap::none));
+    CHECK(within.is_everywhere() == (overlap == Overlap::all));
+  }
+}
+
 /// Corners and random points of a box against the region's answer for the box.
 void check_answers(const Region& region, int dimension) {
+  check_parts(region, dimension);
   Random random(7);
   int answers[3] = {0, 0, 0};
   for (int n = 0; n < 4000; ++n) {
@@ -105,4 +132,32 @@ TEST_CASE("faces in common count for nothing") {
   CHECK(half_space({1, 0, 0}, {1, 0, 0}).overlap({{1, 0, 0}, {2, 1, 1}}) == Overlap::none);
   CHECK(difference_of({everywhere(), unit}).overlap({{0.2, 0, 0}, {1, 1, 1}}) == Overlap::none);
   CHECK(difference_of({everywhere(), unit}).overlap({{1, 0, 0}, {2, 1, 1}}) == Overlap::all);
+}
+
+TEST_CASE("bounds are as tight as the shapes tell") {
+  const auto same = [](const AxisBox& a, const AxisBox& b) {
+    return a.lower == b.lower && a.upper == b.upper;
+  };
+  const Region unit = box(3, {0, 0, 0}, {1, 1, 1}), disc = ball({2, 0, 0}, 0.5);
+  CHECK(same(disc.bounds(), {{1.5, -0.5, -0.5}, {2.5, 0.5, 0.5}}));
+  CHECK(same(cylinder(1, {1, 2, 3}, 0.5, -4, 4).bounds(), {{0.5, -4, 2.5}, {1.5, 4, 3.5}}));
+  CHECK(same(ellipsoid(3, {1, 0, 0}, {1, 2, 3}).bounds(), {{0, -2, -3}, {2, 2, 3}}));
+  CHECK(same(union_of({unit, disc}).bounds(), {{0, -0.5, -0.5}, {2.5, 1, 1}}));
+  CHECK(same(difference_of({unit, disc}).bounds(), unit.bounds()));
+  CHECK(same(intersection_of({unit, half_space({0.5, 9, 9}, {2, 0, 0})}).bounds(), {{0, 0, 0}, {0.5, 1, 1}}));
+  CHECK(half_space({0, 0, 0}, {1, 1, 0}).bounds().upper[0] == no_end);
+  CHECK(everywhere().bounds().lower[2] == -no_end);
+}
+
+TEST_CASE("shapes that are nested deep share their parts") {
+  // A copy per level and question would be 2^60 of them.
+  Region nested = ball({}, 1);
+  for (int k = 0; k < 60; ++k) nested = difference_of({nested, ball({0.02 * k, 0.5, 0}, 0.01)});
+  const Region copy = nested;
+  CHECK(copy({0, 0, 0}));
+  CHECK(!copy({0.02 * 59, 0.5, 0}));
+  CHECK(!copy({0.1, 0.5, 0}));
+  CHECK(copy.overlap({{-0.1, -0.1, 0}, {0.1, 0.1, 0}}) == Overlap::all);
+  CHECK(!Region()({0, 0, 0}));
+  CHECK(Region().overlap({{0, 0, 0}, {1, 1, 1}}) == Overlap::none);
 }
