@@ -52,14 +52,14 @@ def loaded(at, **method):
         particles_per_cell = 2
         density = 2048.0
         shape.box = {{ lower = [{x}, {y}], upper = [{x + 6}, {y + 6}] }}
-        stress = {{ value = [0, {-16384.0 * (y + 6)}, 0, 0, 0, 0], gradient = {{ y = [0, 16384.0, 0, 0, 0, 0] }} }}
-        velocity = {{ value = [{-0.25 * x}, 0], gradient = {{ x = [0.25, 0] }} }}
+        stress = {{ value = [0, {-16384.0 * (y + 6)}, 0, 0, 0, 0], dy = [0, 16384.0, 0, 0, 0, 0] }}
+        velocity = {{ value = [{-0.25 * x}, 0], dx = [0.25, 0] }}
         material = {{ youngs_modulus = 1e7, poisson_ratio = 0.25 }}
         [[traction]]
         hydrostatic = {{ unit_weight = 8192.0, level = {y + 5} }}
         surface.box = {{ lower = [{x + 5}, {y}], upper = [{x + 8}, {y + 8}] }}
         [[traction]]
-        affine = {{ value = [0, {-1024.0 * x - 8192.0}, 0, 0, 0, 0], gradient = {{ x = [0, 1024.0, 0, 0, 0, 0] }} }}
+        affine = {{ value = [0, {-1024.0 * x - 8192.0}, 0, 0, 0, 0], dx = [0, 1024.0, 0, 0, 0, 0] }}
         surface.box = {{ lower = [{x}, {y + 5}], upper = [{x + 8}, {y + 8}] }}
         [[traction]]
         surface.box = {{ lower = [{x}, {y + 5}], upper = [{x + 8}, {y + 8}] }}

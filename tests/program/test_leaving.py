@@ -99,7 +99,7 @@ class LeavesTheGrid(ProgramTest):
             for engine in ("cell_lanes", "particles"):
                 out = self.folder / f"{kappa}-{engine}"
                 done = vsb("run", self.write(BLOCK.replace("dt = 0.001", f"kappa = {kappa}")), "--out", out, "--set",
-                           "body[0].velocity={ value = [0.0, 0.0], gradient = { x = [1.0, 0.5], y = [0.3, -1.0] } }",
+                           "body[0].velocity={ value = [0.0, 0.0], dx = [1.0, 0.5], dy = [0.3, -1.0] }",
                            "--set", f"method.engine={engine}")
                 self.assertEqual(done.returncode, 3, f"kappa {kappa}, {engine}: {done.stderr}")
                 self.assertIn("diverged at step", done.stderr)
