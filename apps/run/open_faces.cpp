@@ -29,7 +29,7 @@ std::vector<std::string> open_face_advice(const Scene& scene, const PlacedPartic
   for (size_t b = 0; b < scene.bodies.size(); ++b)
     for (size_t axis = 0; axis < static_cast<size_t>(scene.dimension); ++axis)
       for (size_t side = 0; side < 2; ++side) {
-        if (scene.faces.fixed[axis][side] != 0) continue;
+        if (scene.faces.fixed[axis][side] != 0 || scene.faces.outflow[axis][side]) continue;
         const auto [low, high] = inner_lines(scene.grid, axis);
         const auto is_outermost = [&, low = low, high = high](const Point& x) {
           const double q = logical_coordinates(scene.grid, x)[axis];
