@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <vsb/kernels/lane_resultant.hpp>
+#include <vsb/physics/traction_fields.hpp>
 
 #include "random_body.hpp"
 
@@ -129,7 +130,7 @@ TEST_CASE("a face that ends at a support has its whole resultant, whatever is he
   LaneState<2, double, Device> lanes;
   lanes.memory.grid = dam.grid;
   lanes.boundary.declared = dam.declared(dam.grid);
-  for (const ComponentMask held : {2, 3}) {  // a roller, a clamp
+  for (const auto held : {ComponentMask{2}, ComponentMask{3}}) {  // a roller, a clamp
     const auto linear = dam.of_particles(basis, held);
     CHECK_THAT(linear.force[0], WithinRel(x, 1e-12));
     CHECK_THAT(linear.force[1], WithinRel(y, 1e-12));
