@@ -57,7 +57,7 @@ void check_tractions(const Scene& scene, const Basis& basis, const Occupancy<Dev
         const bool lower = ijk[i] == 0 && faces[0] == 0,
                    upper = ijk[i] == basis.grid.cells[i] && faces[1] == 0;
         if (!lower && !upper) continue;
-        const auto& body = body_of(scene, placed, static_cast<size_t>(&x - placed.position.data()));
+        const auto& body = body_of(scene, placed, p);
         throw SetupError(body.where, fmt::format("body '{}' reaches the open face {}_{} of the grid, where a "
                                                  "traction is declared: leave at least "
                                                  "one empty cell between them, or give the face a condition, "
