@@ -138,10 +138,15 @@ KOKKOS_FUNCTION bool find_covered(const MappedGrid<Dim, Real>& grid, int, const 
                                   int axis, int side, CoveredFace<Dim, Real>& piece) {
   auto place = grid.locate(x);
   if (place.cell[axis] != (side == 0 ? 0 : grid.cells[axis] - 1)) return false;
+  const Real away = side == 0 ? place.xi[axis] : Real(1) - place.xi[axis];
+  if (!(away > Real(0))) return false;
   place.xi[axis] = static_cast<Real>(side);
-  const auto at = grid.cell(place.cell).at(place.xi);
+  const auto cell = grid.cell(place.cell);
+  const auto at = cell.at(place.xi);
   const auto n = face_normal(at.J, axis, side);
-  const Real area = covered_area<Dim>(V, dot(at.x - x, n));
+  // Particles are cubes in local coordinates: cells may be far longer than wide.
+  const Real share = V / cell.volume(), d = dot(at.x - x, n);
+  const Real area = covered_area<Dim>(share, away) * V * away / (share * d);
   piece = {at.x, area * n};
   return area > Real(0);
 }

@@ -150,7 +150,7 @@ class FarFromTheOrigin(ProgramTest):
         text = column(MAP, "double", "auto").replace(f"upper = [{MAP[0] + 4}, {MAP[1] + 4}]", f"upper = [{MAP[0] + 4}, {MAP[1] + 8}]")
         done = vsb("check", self.write(text))
         self.assertEqual(done.returncode, 2)
-        self.assertIn("at the open face y_max, to (500000.0625, 4200006.063) m,", done.stderr)
+        self.assertIn("at the open face y_max, to (500000.062, 4200006.062) m,", done.stderr)
 
     def test_what_single_precision_does_not_resolve_is_refused(self):
         long_grid = column((0.0, 0.0), "float", "particles").replace("upper = [4.0, 6.0]", "upper = [4.0, 6000.0]")

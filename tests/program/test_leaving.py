@@ -90,8 +90,10 @@ class LeavesTheGrid(ProgramTest):
         done = vsb("run", self.write(polar), "--out", self.folder / "polar", "--set", "output.grid=true")
         self.assertEqual(done.returncode, 8, done.stderr)
         self.assertRegex(done.stderr, r"left the grid at the open face r_max, at \(3\.\d+, 1\.\d+\) m")
-        out = self.run_scene(self.write(polar.replace("time =", 'faces.r_max = "outflow"\n    time ='), "out.toml"))["outflow"]
-        self.assertEqual((out["particles"], out["faces"]), (16, {"r_max": 16}))
+        summary = self.run_scene(self.write(polar.replace("time =", 'faces.r_max = "outflow"\n    time ='), "out.toml"))
+        out = summary["outflow"]
+        self.assertGreater(out["particles"], 10)
+        self.assertEqual((summary["particles"], out["faces"]), (0, {"r_max": out["particles"]}))
 
     def test_unstable_steps_are_a_divergence(self):
         """Whichever way a particle is thrown out of the grid: exit code 3, and no summary."""
@@ -113,11 +115,13 @@ class LeavesTheGrid(ProgramTest):
     def test_studies_tell_it_as_a_failure_of_the_case(self):
         self.write(BLOCK, "block.toml")
         study = self.write("""
+            title = "A block that leaves"
+            axis = { name = "spacing", unit = "m" }
             [[series]]
             name = "leaves"
             scene = "block.toml"
             [[series.case]]
-            label = "a"
+            axis = 0.5
             expect_failure = "left the grid at the open face x_max"
             """, "study.toml")
         done = vsb("study", study, "--out", self.folder / "study")
@@ -146,7 +150,7 @@ class Outflow(ProgramTest):
                 for path, _ in frames(out):
                     with h5py.File(path) as file:
                         counts.append(len(file["VTKHDF/Points"]))
-                self.assertEqual(counts, [16] * 6 + [12, 4])
+                self.assertEqual(counts, [16] * 6 + [8, 4])
                 fields = last_fields(out)
                 np.testing.assert_array_equal(fields["id"] % 4, 0)  # the hindmost of each row
                 np.testing.assert_allclose(fields["displacement"][:, 0], 2.8, rtol=1e-9)
