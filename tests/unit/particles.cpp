@@ -21,9 +21,9 @@ TEMPLATE_TEST_CASE_SIG("check names the field that has the wrong shape", "",
     bad.position = five_by_seven;
     CHECK_THROWS_WITH(bad.check(), containing("position is 5 x 7, expected 5 x " + std::to_string(Dim)));
   }
-  SECTION("rows of position") {
+  SECTION("rows of position") {  // which are the number of particles
     bad.position = four_by(Dim);
-    CHECK_THROWS_WITH(bad.check(), containing("position is 4 x"));
+    CHECK_THROWS_WITH(bad.check(), containing("velocity is 5 x " + std::to_string(Dim) + ", expected 4 x"));
   }
   SECTION("columns of velocity") {
     bad.velocity = five_by_seven;
