@@ -88,15 +88,17 @@ struct MarkLaneNodes {
                              std::uint64_t active) const {
     constexpr int width = Lanes<Real>::width;
     const int chunks = lanes.groups_per_row() + 1;
-    for (int b = 0; b < 64; ++b) {
-      const int x = 64 * w + b;
-      if (x >= chunks * width) return;
-      const int chunk = lanes.chunk_at(r * chunks + x / width);
+    const bool alike = boundary.declared.size() == 0 && !boundary.bits.carried.any();
+    for (int c = 64 / width * w; c < math::min(64 / width * (w + 1), chunks); ++c) {
+      const int chunk = lanes.chunk_at(r * chunks + c);
       if (chunk < 0) continue;
-      const TractionMask here = marked >> b & 1   ? ~TractionMask(0)
-                                : active >> b & 1 ? boundary.conservative
-                                                  : 0;
-      boundary.tractions(chunk * width + x % width) = here == 0 ? 0 : here & declared(r, x, at);
+      for (int x = c * width; x < (c + 1) * width; ++x) {
+        const TractionMask here = marked >> x % 64 & 1   ? ~TractionMask(0)
+                                  : active >> x % 64 & 1 ? boundary.conservative
+                                                         : 0;
+        boundary.tractions(chunk * width + x % width) =
+            alike ? here & boundary.everywhere : here == 0 ? 0 : here & declared(r, x, at);
+      }
     }
   }
   /// Word w of the carried tractions; whether it changed.
