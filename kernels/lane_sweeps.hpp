@@ -140,9 +140,17 @@ struct MoveGroup {
   Leavers<Dim, Real, Device> leavers;
   Real beta = 0;  ///< share of the divergence that gives way to a mean (physics/mean_divergence.hpp)
 
-  [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void operator()(const LaneGroup<Dim>& group,
-                                                                  int layer) const {
-    const P mean = beta > Real(0) ? mean_divergence(group) : P(Real(0));
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(const LaneGroup<Dim>& group, int layer) const {
+    if (beta > Real(0))
+      move<true>(group, layer);
+    else
+      move<false>(group, layer);
+  }
+  /// averaged: whether the divergence gives way to its mean.
+  template <bool averaged>
+  [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void move(const LaneGroup<Dim>& group, int layer) const {
+    P mean;
+    if constexpr (averaged) mean = mean_divergence(group);
     Vector<(1 << Dim), P> dx[Dim];
     CellPolynomial<Dim, P> u[Dim];
     static_for<Dim>([&](auto i) VSB_UNROLLED {
@@ -158,7 +166,7 @@ struct MoveGroup {
           if constexpr (!Cubic) L(i, j) *= P(grid.inverse_spacing[j] * grid.spacing[0]);
         });
       });
-      if (beta > Real(0)) L = with_mean_divergence(L, mean, P(beta));
+      if constexpr (averaged) L = with_mean_divergence(L, mean, P(beta));
       advance(entry, L);
       const P V = lanes.load(lanes.volume_column, entry);
       lanes.store(lanes.volume_column, entry, volume(V, L, P(1)));

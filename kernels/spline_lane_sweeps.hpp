@@ -111,8 +111,15 @@ struct MoveSplineGroup : MoveGroup<false, Material, Volume, Dim, Real, Device> {
     return room;
   }
 
-  [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void operator()(const LaneGroup<Dim>& group,
-                                                                  int layer) const {
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(const LaneGroup<Dim>& group, int layer) const {
+    if (beta > Real(0))
+      move<true>(group, layer);
+    else
+      move<false>(group, layer);
+  }
+  /// averaged: whether the divergence gives way to its mean.
+  template <bool averaged>
+  [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void move(const LaneGroup<Dim>& group, int layer) const {
     const auto& stencil = lanes.stencils(lanes.number_of(group));
     QuadraticPolynomial<Dim, P> dx[Dim], u[Dim];
     static_for<Dim>([&](auto i) VSB_UNROLLED {
@@ -120,10 +127,12 @@ struct MoveSplineGroup : MoveGroup<false, Material, Volume, Dim, Real, Device> {
       coefficients_of(nodes, nodes.remapped_column + i, stencil, u[i]);
     });
     const Room room = room_of(group);
-    const auto centres = centre_room_of(lanes, group, grid, walls);
+    CentreRoom<Dim, P> centres;
     CellPolynomial<Dim, P> mean;
-    lane_sums::set_zero<Dim>(mean);
-    if (beta > Real(0)) means_around(stencil, mean);
+    if constexpr (averaged) {
+      centres = centre_room_of(lanes, group, grid, walls);
+      means_around(stencil, mean);
+    }
     for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
       const Powers<Dim, P> xi(lanes.load_xi(entry));
       Matrix<Dim, P> L;  // dt L
@@ -133,7 +142,7 @@ struct MoveSplineGroup : MoveGroup<false, Material, Volume, Dim, Real, Device> {
           L(i, j) = gradient[j] * P(grid.inverse_spacing[j] * grid.spacing[0]);
         });
       });
-      if (beta > Real(0)) L = with_mean_divergence(L, value_at<Dim>(mean, centres.place(xi.first)), P(beta));
+      if constexpr (averaged) L = with_mean_divergence(L, value_at<Dim>(mean, centres.place(xi.first)), P(beta));
       this->advance(entry, L);
       const P V = lanes.load(lanes.volume_column, entry);
       lanes.store(lanes.volume_column, entry, volume(V, L, P(1)));
