@@ -3,12 +3,13 @@
 /// The mean divergence thetabar_p of particles, with the functions M_c of physics/mean_divergence.hpp:
 ///   theta_p = sum_I v_I . grad N_Ip,   theta_c = sum_p V_p M_c(x_p) theta_p / sum_p V_p M_c(x_p),
 ///   thetabar_p = sum_c M_c(x_p) theta_c.
-/// Sums go over the particles of one body: where two materials share a cell, a mean over both would not be
+/// Sums go over the particles of one stiffness: where two share a cell, a mean over both would not be
 /// symmetric in the energy.
 ///
 /// Reads positions, volumes, sorted bins and a nodal field; writes one number per particle.
 #pragma once
 
+#include <tuple>
 #include <vector>
 #include <vsb/kernels/body.hpp>
 #include <vsb/kernels/scatter.hpp>
@@ -89,7 +90,19 @@ struct InterpolateDivergence {
 
 }  // namespace kernel
 
-/// Overwrites mean.of_particle with the mean divergence of the nodal field [node][Dim].
+/// What two bodies have in common whose mean divergence is one: lambda, mu, and whether they flow.
+template <class Real>
+std::tuple<Real, Real, bool> stiffness_of(const Material<Real>& material) {
+  return std::visit(
+      [](const auto& m) {
+        const auto elastic = m.small_strain_law();
+        return std::tuple<Real, Real, bool>(elastic.lambda, elastic.shear_modulus, m.plastic);
+      },
+      material);
+}
+
+/// Overwrites mean.of_particle with the mean divergence of the nodal field [node][Dim]. Bodies of one
+/// stiffness that follow each other count as one.
 template <class Exec, class Basis, int Dim, class Real, class Device>
 void average_divergence(const Exec& exec, const Particles<Dim, Real, Device>& particles,
                         const ParticleBins<Device>& bins,
@@ -106,16 +119,21 @@ void average_divergence(const Exec& exec, const Particles<Dim, Real, Device>& pa
     mean.sums = typename ScatterWorkspace<Real, Device>::Target("vsb::divergence_sums", functions, 2);
     mean.of_function = typename MeanDivergence<Real, Device>::Numbers("vsb::divergence_means", functions);
   }
-  for (const auto& body : bodies) {
+  for (size_t b = 0; b < bodies.size();) {
+    const int first = bodies[b].first;
+    int last = bodies[b].last;
+    const auto stiffness = stiffness_of(bodies[b].material);
+    while (++b < bodies.size() && bodies[b].first == last && stiffness_of(bodies[b].material) == stiffness)
+      last = bodies[b].last;
     scatter(exec, "vsb::sum_divergence", strategy, particles.count(), means, bins, mean.workspace,
             kernel::WeightedByVolume<Basis, Means, Dim, Real, Device>{particles, velocity, basis, means,
-                                                                      bins.bin, body.first, body.last},
+                                                                      bins.bin, first, last},
             mean.sums);
     Kokkos::parallel_for("vsb::divide_by_volume",
                          Kokkos::RangePolicy<Exec>(exec, 0, static_cast<int>(functions)),
                          kernel::DivideByVolume<Means, Real, Device>{means, mean.sums, mean.of_function});
     Kokkos::parallel_for("vsb::interpolate_divergence",
-                         Kokkos::RangePolicy<Exec>(exec, body.first, body.last),
+                         Kokkos::RangePolicy<Exec>(exec, first, last),
                          kernel::InterpolateDivergence<Means, Dim, Real, Device>{
                              particles, means, bins.bin, mean.of_function, mean.of_particle});
   }

@@ -12,8 +12,6 @@ std::string obstacle(const Scene& scene) {
   if (scene.method.scatter != "gathered")
     return fmt::format("method.scatter = \"{}\" is a way of the particle kernels", scene.method.scatter);
   if (scene.method.fill_criterion > 0) return "method.fill_criterion is on";
-  if (scene.method.averaged && scene.bodies.size() > 1)
-    return "method.volumetric is \"averaged\", which each of its bodies is apart";
   if (scene.method.void_filter) return "method.void_filter is on";
   for (const auto& traction : scene.tractions)
     if (traction.self_balanced) return fmt::format("traction '{}' is self-balanced", traction.name);

@@ -47,8 +47,10 @@ struct Strained {
     return theta;
   }
   std::vector<double> mean(Scatter strategy = Scatter::gathered) {
-    average_divergence(Exec(), state.particles, state.occupancy.bins, velocity,
-                       {{0, state.particles.count(), LinearElastic<double>::from_young(1, 0.3)}}, basis,
+    return mean({{0, state.particles.count(), LinearElastic<double>::from_young(1, 0.3)}}, strategy);
+  }
+  std::vector<double> mean(const std::vector<Body<double>>& bodies, Scatter strategy = Scatter::gathered) {
+    average_divergence(Exec(), state.particles, state.occupancy.bins, velocity, bodies, basis,
                        state.mean_divergence, strategy);
     const auto host = read(state.mean_divergence.of_particle);
     return {host.data(), host.data() + host.extent(0)};
@@ -156,6 +158,26 @@ TEMPLATE_TEST_CASE_SIG("the mean divergence is what its formula says, slivers in
   check_formula(grid, LinearBasis<Dim, double>{grid}, 11);
   for (const unsigned seed : {21u, 31u, 41u})
     check_formula(grid, WideBasis<QuadraticBSplineBasis<Dim, double>>::on(grid), seed);
+}
+
+TEST_CASE("bodies of one stiffness that follow each other have one mean divergence") {
+  const auto grid = make_grid<2, double>();
+  Strained<LinearBasis<2, double>> strained({grid}, random_particles(grid, 40, 61));
+  Random random(62);
+  strained.draw(random);
+  const auto rock = LinearElastic<double>::from_young(1, 0.3),
+             other = LinearElastic<double>::from_young(2, 0.3);
+  const auto whole = strained.mean();
+  const auto of = [&](const Material<double>& second, const Material<double>& third) {
+    return strained.mean({{0, 10, rock}, {10, 25, second}, {25, 40, third}});
+  };
+  CHECK(of(rock, rock) == whole);
+  CHECK(of(rock, other) != whole);
+  // Each side of an interface is as if the other were not there.
+  const auto first = of(rock, other), split = of(other, other);
+  CHECK(std::equal(first.begin() + 25, first.end(),
+                   of(rock, DruckerPrager<double>::von_mises(2, 0.3, 1, 0)).begin() + 25));
+  CHECK(std::equal(first.begin(), first.begin() + 10, split.begin()) == false);
 }
 
 TEMPLATE_TEST_CASE_SIG("the mean divergence is symmetric and never larger, beside walls too", "",

@@ -2,7 +2,9 @@
 """Near incompressibility: errors with the mean divergence are those at a Poisson ratio of 0.2, and who gets it."""
 import unittest
 
-from vsb_program import SCENES, ProgramTest, vsb
+import numpy as np
+
+from vsb_program import SCENES, ProgramTest, last_fields, vsb
 
 RATIO = "body[0].material.poisson_ratio={}"
 ACCURATE = ('setting="accurate"', 'method.basis="quadratic_bspline"', 'body[0].boundary="cut2x2"',
@@ -39,6 +41,25 @@ class Locking(ProgramTest):
             steps, static = self.run_scene(scene, *few), self.run_scene(scene, "--static", *few, out="static")
             for name in ("e_rr", "e_tt"):
                 self.assertAlmostEqual(steps["errors"][name], static["errors"][name], delta=digits * static["errors"][name])
+
+    def test_bodies_that_share_cells(self):
+        """Two rings of one material, one in the other, that meet within cells: one mean, on both engines."""
+        text = (SCENES / "cylinder.toml").read_text()
+        inner = text[text.index("[[body]]"):text.index("[[traction]]")]
+        outer = inner.replace('"ring"', '"outer ring"').replace("radius = 1.0", "radius = 3.1")
+        scene = self.folder / "rings.toml"
+        scene.write_text(text.replace(inner, inner.replace("radius = 5.0", "radius = 3.1") + outer))
+        stiff = given(RATIO.format(0.49), "body[1].material.poisson_ratio=0.49", "method.damping=0", "time.until_static.max_steps=100")
+        fields = {}
+        for engine in ("cell_lanes", "particles"):
+            out = self.folder / engine
+            done = vsb("run", scene, *stiff, "--set", f"method.engine={engine}", "--out", out)
+            self.assertIn(done.returncode, (0, 7), done.stderr)
+            fields[engine] = last_fields(out)
+        for name in ("position", "velocity", "cauchy_stress", "volume"):
+            lanes, particles = (fields[engine][name] for engine in ("cell_lanes", "particles"))
+            self.assertGreater(len(particles), 1000)
+            np.testing.assert_allclose(lanes, particles, rtol=0, atol=1e-12 * np.abs(particles).max(), err_msg=name)
 
     def said(self, *pairs):
         done = vsb("check", SCENES / "cylinder.toml", *given("grid.spacing=0.5", *pairs))
