@@ -98,6 +98,7 @@ Record measure_flows(const CostOptions& o) {
       }));
   add(in_child(o.threads, [&](Record& r) { Measurements<Real>::sparse(r); }));
   add(in_child(o.threads, [&](Record& r) { Measurements<Real>::materials(r); }));
+  add(in_child(o.threads, [&](Record& r) { Measurements<Real>::means(r); }));
   double bytes[2];
   for (const bool sparse : {false, true})
     bytes[sparse] = in_child(
@@ -168,7 +169,8 @@ void print(const Row& row) {
 
 void print_flows(const Record& r, const char* real) {
   std::printf(
-      "\nfree flight at 0.1 cells per step, a grid of 30 times the body's volume, and plasticity, %s\n",
+      "\nfree flight at 0.1 cells per step, a grid of 30 times the body's volume, plasticity, and means of the "
+      "divergence, %s\n",
       real);
   for (const auto& [name, value] : r.all()) std::printf("  %-30s %8.3f\n", name.c_str(), value);
   std::fflush(stdout);

@@ -16,6 +16,7 @@ struct Measurements {
   static void kernels(const CostCase& what, int axis, int repeats, Record& record);
   static void flow(int direction, Places places, int steps, Record& record);
   static void materials(Record& record);
+  static void means(Record& record);
   static void sparse(Record& record);
   static void sparse_memory(bool is_sparse, Record& record);
 };
