@@ -4,6 +4,7 @@
 /// every kernel under callgrind. Prints what the counts depend on.
 
 #include "lane_checks.hpp"
+#include "spline_scene.hpp"
 
 #include <cstdio>
 #if __has_include(<valgrind/callgrind.h>)
@@ -84,6 +85,19 @@ bool run_moving(const char* name, const Size& size) {
   return findings.empty();
 }
 
+/// B-splines, with the divergence of every particle its own, and with its mean.
+void run_splines(const char* full, const char* averaged, const Size& size) {
+  SplineColumn<3, double> scene(size, Load::off);
+  scene.pack();
+  for (const char* name : {full, averaged}) {
+    if (name == averaged) scene.column.options.volumetric = Volumetric::averaged;
+    scene.step_lanes();
+    scene_name = name;
+    scene.step_lanes();
+    scene_name.clear();
+  }
+}
+
 bool run_all() {
   const Size small3{"small", 5, 12, 2}, dense3{"dense", 3, 6, 4}, small2{"small", 12, 40, 2},
       small1{"small", 1, 200, 2};
@@ -95,6 +109,7 @@ bool run_all() {
   good = run<2, double>("2d_double_loaded", small2, Load::free_faces, 0) && good;
   good = run<2, float>("2d_float", small2, Load::off, 0) && good;
   good = run_moving<3, double>("3d_double_moving", {"block", 6, 6, 2, 9, 9}) && good;
+  run_splines("3d_double_splines", "3d_double_splines_averaged", {"small", 5, 12, 2});
   return run<1, double>("1d_double_loaded", small1, Load::free_faces, 0) && good;
 }
 

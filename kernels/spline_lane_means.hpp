@@ -131,118 +131,157 @@ struct SumLaneDivergence {
   }
 };
 
-/// theta_c of a chunk, as if no function were small; notes where one is.
+}  // namespace kernel
+
+/// Where functions are small, and where they go.
+template <class Device>
+struct SmallMeans {
+  Kokkos::View<LaneMask*, Device> small, taken;  ///< [chunk]: those that are, those that take others in
+  Kokkos::View<int*, Device> home;               ///< [node]: of a small function, the node that takes it in
+};
+
+namespace kernel {
+
+/// theta_c of a chunk, as if no function were small; notes those that are.
 template <int Dim, class Real, class Device>
 struct DivideLaneSums : LaneNodeRows<Dim, Real, Device, 3> {
   using Base = LaneNodeRows<Dim, Real, Device, 3>;
   using Base::nodes;
   using typename Base::P;
-  Real least;                        ///< m^Dim
-  Kokkos::View<int*, Device> small;  ///< [chunk]
+  Real least;  ///< m^Dim
+  SmallMeans<Device> means;
 
   KOKKOS_FUNCTION void operator()(int chunk) const {
     const int node = chunk * P::width;
     const P V = this->sum(1, node), V_theta = this->sum(2, node), zero(Real(0));
     const auto some = V > zero;
     math::select(some, V_theta / V, zero).store(nodes.at(nodes.increment_column, node));
-    small(chunk) = any(some & (V < P(least)));
+    means.small(chunk) = bits_of(some & (V < P(least)));
+    means.taken(chunk) = 0;
   }
 };
 
-/// theta_c where a function is small, or one beside it; by places of chunks in the box.
+/// What the functions at the nodes of a chunk need to find those around them.
 template <int Dim, class Real, class Device>
-struct TakeInSmallMeans {
+struct LaneMeans {
   CellLanes<Dim, Real, Device> lanes;
   LaneNodeRows<Dim, Real, Device, 3> rows;
-  CentreMeans<Dim, Real> means;
-  Kokkos::View<int*, Device> small;
+  CentreMeans<Dim, Real> functions;
+  SmallMeans<Device> means;
+  Vector<Dim, int> first;  ///< the cell whose function is at the lowest node of the box
 
-  /// The sums by the number of a function in `means`.
-  struct Sums {
-    const TakeInSmallMeans& of;
-    KOKKOS_FUNCTION Real operator()(int c, int which) const {
-      const auto cell = of.means.grid.node_ijk(c);
-      const auto lowest = of.lanes.lowest_node();
-      Vector<Dim, int> at;
-      for (int i = 0; i < Dim; ++i) at[i] = cell[i] - 1 - lowest[i];
-      const int node = of.node_at(at);
-      return node < 0 ? Real(0) : of.sum(1 + which, node);
+  /// Calls work(cell, node) for the nodes of a chunk, by its place in the box, whose bits are set in
+  /// bits(chunk).
+  template <class Work>
+  KOKKOS_FORCEINLINE_FUNCTION void for_each(const Kokkos::View<LaneMask*, Device>& bits, int place,
+                                            const Work& work) const {
+    const int chunk = lanes.chunk_at(place);
+    if (chunk < 0 || bits(chunk) == 0) return;
+    const int per_row = lanes.groups_per_row() + 1;
+    auto cell = first;
+    cell[0] += place % per_row * lanes.width;
+    for (int i = 1, row = place / per_row; i < Dim; ++i) {
+      cell[i] += row % (lanes.box.cells[i] + 1);
+      row /= lanes.box.cells[i] + 1;
     }
-  };
-  KOKKOS_FUNCTION int node_rows(int axis) const { return lanes.box.cells[axis] + 1; }
-  KOKKOS_FUNCTION int node_at(const Vector<Dim, int>& at) const {
+    for (int l = 0; l < lanes.width; ++l, ++cell[0])
+      if (bits(chunk) >> l & 1) work(cell, chunk * lanes.width + l);
+  }
+  /// The node of a cell's function, or -1.
+  KOKKOS_FORCEINLINE_FUNCTION int node_of(const Vector<Dim, int>& cell) const {
     int row = 0;
     for (int i = Dim - 1; i > 0; --i) {
-      if (at[i] < 0 || at[i] >= node_rows(i)) return -1;
-      row = row * node_rows(i) + at[i];
+      const int at = cell[i] - first[i];
+      if (at < 0 || at > lanes.box.cells[i]) return -1;
+      row = row * (lanes.box.cells[i] + 1) + at;
     }
-    const int end = (lanes.groups_per_row() + 1) * lanes.width;
-    return at[0] < 0 || at[0] >= end ? -1 : lanes.node_at(row, at[0]);
+    const int x = cell[0] - first[0];
+    return x < 0 || x >= (lanes.groups_per_row() + 1) * lanes.width ? -1 : lanes.node_at(row, x);
   }
-  KOKKOS_FUNCTION Real sum(int column, int node) const {
+  KOKKOS_FORCEINLINE_FUNCTION bool is_small(int node) const {
+    return means.small(node / lanes.width) >> (node % lanes.width) & 1;
+  }
+  /// V M_c (column 1), V M_c theta (column 2).
+  KOKKOS_FORCEINLINE_FUNCTION Real sum(int column, int node) const {
     Real all = 0;
     for (int plane = 0; plane < (Dim > 1 ? 3 : 1); ++plane)
       all += *rows.nodes.at(rows.nodes.sums_of_plane(plane) + column, node);
     return all;
   }
-  KOKKOS_FUNCTION void operator()(int place) const {
-    if (lanes.chunk_at(place) < 0) return;
-    const int per_row = lanes.groups_per_row() + 1;
-    Vector<Dim, int> first;
-    first[0] = place % per_row * lanes.width;
-    for (int i = 1, row = place / per_row; i < Dim; ++i) {
-      first[i] = row % node_rows(i);
-      row /= node_rows(i);
-    }
-    if (!small_around(first)) return;
-    const auto lowest = lanes.lowest_node();
-    for (int l = 0; l < lanes.width; ++l) {
-      auto cell = first;
-      cell[0] += l;
-      const int node = node_at(cell);
-      bool exists = true;
-      for (int i = 0; i < Dim; ++i) {
-        cell[i] += lowest[i] + 1;
-        exists = exists && cell[i] >= 0 && cell[i] < means.grid.cells[i];
-      }
-      if (exists)
-        *rows.nodes.at(rows.nodes.increment_column, node) =
-            means.mean(means.grid.node_index(cell), Sums{*this});
-    }
+  KOKKOS_FORCEINLINE_FUNCTION Real& theta(int node) const {
+    return *rows.nodes.at(rows.nodes.increment_column, node);
   }
-  KOKKOS_FUNCTION bool small_around(const Vector<Dim, int>& first) const {
-    constexpr int around = Dim == 1 ? 3 : Dim == 2 ? 9 : 27;
-    for (int k = 0; k < around; ++k) {
-      auto at = first;
-      for (int i = 0, digits = k; i < Dim; ++i, digits /= 3)
-        at[i] += (digits % 3 - 1) * (i == 0 ? lanes.width : 1);
-      const int node = node_at(at);
-      if (node >= 0 && small(node / lanes.width) != 0) return true;
-    }
-    return false;
+};
+
+/// The homes of small functions.
+template <int Dim, class Real, class Device>
+struct FindHomes : LaneMeans<Dim, Real, Device> {
+  KOKKOS_FUNCTION void operator()(int place) const {
+    this->for_each(this->means.small, place, [&](const auto& cell, int node) {
+      const int home = this->node_of(this->functions.home_of(cell, [&](const auto& c) {
+        const int there = this->node_of(c);
+        return there < 0 ? Real(0) : this->sum(1, there);
+      }));
+      this->means.home(node) = home;
+      constexpr int width = Lanes<Real>::width;
+      if (home != node)
+        Kokkos::atomic_fetch_or(&this->means.taken(home / width), LaneMask(1) << home % width);
+    });
+  }
+};
+
+/// theta_c of those that take others in.
+template <int Dim, class Real, class Device>
+struct TakeInSmallMeans : LaneMeans<Dim, Real, Device> {
+  KOKKOS_FUNCTION void operator()(int place) const {
+    this->for_each(this->means.taken, place, [&](const auto& cell, int node) {
+      Real volume = this->sum(1, node), divergence = this->sum(2, node);
+      this->functions.for_each_neighbour(cell, [&](const auto& c) {
+        const int there = this->node_of(c);
+        if (there < 0 || !this->is_small(there) || this->means.home(there) != node) return;
+        volume += this->sum(1, there);
+        divergence += this->sum(2, there);
+      });
+      this->theta(node) = divergence / volume;
+    });
+  }
+};
+
+/// theta_c of those that were taken in.
+template <int Dim, class Real, class Device>
+struct GiveBackMeans : LaneMeans<Dim, Real, Device> {
+  KOKKOS_FUNCTION void operator()(int place) const {
+    this->for_each(this->means.small, place,
+                   [&](const auto&, int node) { this->theta(node) = this->theta(this->means.home(node)); });
   }
 };
 
 }  // namespace kernel
 
-/// Leaves theta_c in nodes.increment_column. `grid` is that of the scene, `dual` the one of its dual cells;
-/// `small` is memory that fits itself.
+/// Leaves theta_c in nodes.increment_column. `grid` is that of the scene; `small` is memory that fits itself.
 template <class Exec, int Dim, class Real, class Device>
 void average_lane_divergence(const Exec& exec, const LaneState<Dim, Real, Device>& s,
-                             const UniformGrid<Dim, Real>& grid, Kokkos::View<int*, Device>& small) {
+                             const UniformGrid<Dim, Real>& grid, SmallMeans<Device>& small) {
   const auto& m = s.memory;
   const int chunks = m.lanes.node_count / m.lanes.width;
-  if (static_cast<int>(small.extent(0)) < chunks)
-    small = Kokkos::View<int*, Device>("vsb::small_means", static_cast<size_t>(chunks));
-  const CentreMeans<Dim, Real> means{with_ghost_layer(grid), m.walls};
+  if (static_cast<int>(small.small.extent(0)) < chunks) {
+    const auto n = static_cast<size_t>(chunks);
+    small.small = Kokkos::View<LaneMask*, Device>("vsb::small_means", n);
+    small.taken = Kokkos::View<LaneMask*, Device>("vsb::taking_means", n);
+    small.home = Kokkos::View<int*, Device>("vsb::homes_of_means", n * static_cast<size_t>(m.lanes.width));
+  }
+  kernel::LaneMeans<Dim, Real, Device> at{
+      m.lanes, {m.nodes}, {with_ghost_layer(grid), m.walls}, small, m.lanes.lowest_node()};
+  for (int i = 0; i < Dim; ++i) ++at.first[i];  // of the ghost layer
   Kokkos::parallel_for("vsb::sum_lane_divergence", detail::over_layers(exec, s),
                        kernel::SumLaneDivergence<Dim, Real, Device>{m.lanes, m.nodes, m.grid, m.walls});
   Kokkos::parallel_for(
       "vsb::divide_lane_sums", Kokkos::RangePolicy<Exec>(exec, 0, chunks),
-      kernel::DivideLaneSums<Dim, Real, Device>{{m.nodes}, means.least_fill * grid.cell_volume(), small});
-  Kokkos::parallel_for("vsb::take_in_small_means",
-                       Kokkos::RangePolicy<Exec>(exec, 0, static_cast<int>(m.lanes.chunk_at.extent(0))),
-                       kernel::TakeInSmallMeans<Dim, Real, Device>{m.lanes, {m.nodes}, means, small});
+      kernel::DivideLaneSums<Dim, Real, Device>{{m.nodes}, at.functions.least_volume(), small});
+  const Kokkos::RangePolicy<Exec> places(exec, 0, static_cast<int>(m.lanes.chunk_at.extent(0)));
+  Kokkos::parallel_for("vsb::find_homes_of_means", places, kernel::FindHomes<Dim, Real, Device>{at});
+  Kokkos::parallel_for("vsb::take_in_small_means", places, kernel::TakeInSmallMeans<Dim, Real, Device>{at});
+  Kokkos::parallel_for("vsb::give_back_means", places, kernel::GiveBackMeans<Dim, Real, Device>{at});
 }
 
 }  // namespace vsb

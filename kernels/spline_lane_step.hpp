@@ -33,7 +33,7 @@ struct SplineLaneState : LaneState<Dim, Real, Device> {
   LaneGhosts<Device> ghosts;
   LaneCorners<Device> corners;
   Kokkos::View<int*, Device> crossed;  ///< [layer]: 1 where particles changed the cell of the scene's grid
-  Kokkos::View<int*, Device> small_means;  ///< memory of average_lane_divergence
+  SmallMeans<Device> small_means;      ///< memory of average_lane_divergence
 };
 
 /// The grid of the scene; before packing.

@@ -115,49 +115,58 @@ struct CentreMeans {
   /// theta_c of the function that c went to, or of c with those that came to it.
   template <class Sums>
   KOKKOS_FUNCTION Real mean(int c, const Sums& sums) const {
+    const auto volume = [&](const Vector<Dim, int>& cell) { return sums(grid.node_index(cell), 0); };
     if (!(sums(c, 0) > Real(0))) return 0;
-    const int home = home_of(c, sums);
-    Real volume = sums(home, 0), divergence = sums(home, 1);
-    for_each_neighbour(home, [&](int n) {
-      if (!is_small(n, sums) || home_of(n, sums) != home) return;
-      volume += sums(n, 0);
-      divergence += sums(n, 1);
+    const auto home = home_of(grid.node_ijk(c), volume);
+    const int number = grid.node_index(home);
+    Real all = sums(number, 0), divergence = sums(number, 1);
+    for_each_neighbour(home, [&](const auto& n) {
+      if (!is_small(volume(n)) || grid.node_index(home_of(n, volume)) != number) return;
+      all += volume(n);
+      divergence += sums(grid.node_index(n), 1);
     });
-    return divergence / volume;
+    return divergence / all;
   }
-
- private:
-  template <class Sums>
-  KOKKOS_FUNCTION bool is_small(int c, const Sums& sums) const {
-    return sums(c, 0) > Real(0) && sums(c, 0) < least_fill * grid.cell_volume();
-  }
-  /// The largest neighbour of a small function, if that is not small, too.
-  template <class Sums>
-  KOKKOS_FUNCTION int home_of(int c, const Sums& sums) const {
-    int home = c;
-    Real largest = least_fill * grid.cell_volume();
-    if (!is_small(c, sums)) return c;
-    for_each_neighbour(c, [&](int n) {
-      if (sums(n, 0) < largest || (home != c && !(sums(n, 0) > largest))) return;
-      largest = sums(n, 0);
+  /// m^Dim
+  KOKKOS_FUNCTION Real least_volume() const { return least_fill * grid.cell_volume(); }
+  KOKKOS_FUNCTION bool is_small(Real volume) const { return volume > Real(0) && volume < least_volume(); }
+  /// The function that takes in that of a cell: its largest neighbour; itself where it is not small, or all
+  /// its neighbours are. volume(cell) is that of a function.
+  template <class Volume>
+  KOKKOS_FUNCTION Vector<Dim, int> home_of(const Vector<Dim, int>& cell, const Volume& volume) const {
+    auto home = cell;
+    bool found = false;
+    Real largest = least_volume();
+    if (!is_small(volume(cell))) return home;
+    for_each_neighbour(cell, [&](const auto& n) {
+      const Real there = volume(n);
+      if (there < largest || (found && !(there > largest))) return;
+      largest = there;
       home = n;
+      found = true;
     });
     return home;
   }
-  /// The functions of the cells around, in order.
+  /// The cells around, in order.
   template <class Work>
-  KOKKOS_FORCEINLINE_FUNCTION void for_each_neighbour(int c, const Work& work) const {
-    const auto cell = grid.node_ijk(c);
-    constexpr int around = Dim == 1 ? 3 : Dim == 2 ? 9 : 27;
-    for (int k = 0; k < around; ++k) {
-      auto neighbour = cell;
-      bool exists = k != around / 2;
-      for (int i = 0, digits = k; i < Dim; ++i, digits /= 3) {
-        neighbour[i] += digits % 3 - 1;
-        exists = exists && neighbour[i] >= 0 && neighbour[i] < grid.cells[i];
-      }
-      if (exists) work(grid.node_index(neighbour));
+  KOKKOS_FORCEINLINE_FUNCTION void for_each_neighbour(const Vector<Dim, int>& cell, const Work& work) const {
+    Vector<3, int> first{{0, 0, 0}}, last{{0, 0, 0}};
+    for (int i = 0; i < Dim; ++i) {
+      first[i] = math::max(cell[i] - 1, 0);
+      last[i] = math::min(cell[i] + 1, grid.cells[i] - 1);
     }
+    Vector<3, int> n;
+    for (n[2] = first[2]; n[2] <= last[2]; ++n[2])
+      for (n[1] = first[1]; n[1] <= last[1]; ++n[1])
+        for (n[0] = first[0]; n[0] <= last[0]; ++n[0]) {
+          Vector<Dim, int> neighbour;
+          bool same = true;
+          for (int i = 0; i < Dim; ++i) {
+            neighbour[i] = n[i];
+            same = same && n[i] == cell[i];
+          }
+          if (!same) work(neighbour);
+        }
   }
 };
 
