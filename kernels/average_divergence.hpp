@@ -132,8 +132,7 @@ void average_divergence(const Exec& exec, const Particles<Dim, Real, Device>& pa
     Kokkos::parallel_for("vsb::divide_by_volume",
                          Kokkos::RangePolicy<Exec>(exec, 0, static_cast<int>(functions)),
                          kernel::DivideByVolume<Means, Real, Device>{means, mean.sums, mean.of_function});
-    Kokkos::parallel_for("vsb::interpolate_divergence",
-                         Kokkos::RangePolicy<Exec>(exec, first, last),
+    Kokkos::parallel_for("vsb::interpolate_divergence", Kokkos::RangePolicy<Exec>(exec, first, last),
                          kernel::InterpolateDivergence<Means, Dim, Real, Device>{
                              particles, means, bins.bin, mean.of_function, mean.of_particle});
   }

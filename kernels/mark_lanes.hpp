@@ -96,8 +96,9 @@ struct MarkLaneNodes {
         const TractionMask here = marked >> x % 64 & 1   ? ~TractionMask(0)
                                   : active >> x % 64 & 1 ? boundary.conservative
                                                          : 0;
-        boundary.tractions(chunk * width + x % width) =
-            alike ? here & boundary.everywhere : here == 0 ? 0 : here & declared(r, x, at);
+        boundary.tractions(chunk * width + x % width) = alike       ? here & boundary.everywhere
+                                                        : here == 0 ? 0
+                                                                    : here & declared(r, x, at);
       }
     }
   }
