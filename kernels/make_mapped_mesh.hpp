@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// Makes a mapped grid out of the positions of its nodes, on the host: checks the cells, builds the raster
-/// from which walks start, and copies both to the device.
+/// from which walks start, and copies both to the device. The work grows as the number of cells.
 #pragma once
 
 #include <algorithm>
@@ -53,7 +53,23 @@ void check_cells(const MappedGrid<Dim, Real>& grid) {
   }
 }
 
-/// Twice as many raster cells as the grid has cells, per direction, over the bounding box; and the tolerance.
+/// Whether nodes have their coordinate i from their number along axis i alone, and it increases with that.
+template <int Dim, class Real>
+bool is_rectilinear(const MappedGrid<Dim, Real>& grid) {
+  for (int node = 0; node < grid.node_count(); ++node) {
+    const auto x = grid.node_position(node);
+    const auto ijk = grid.node_ijk(node);
+    for (int i = 0; i < Dim; ++i) {
+      const int stride = grid.node_stride(i);
+      if (x[i] != grid.node_position(ijk[i] * stride)[i]) return false;
+      if (ijk[i] > 0 && !(x[i] > grid.node_position(node - stride)[i])) return false;
+    }
+  }
+  return true;
+}
+
+/// Twice as many raster cells as the grid has cells, per direction, over the bounding box, or a single one
+/// where no walk starts from it; and the tolerance.
 template <int Dim, class Real>
 void fit_raster(MappedGrid<Dim, Real>& grid) {
   Vector<Dim, Real> low = grid.node_position(0), high = low;
@@ -79,73 +95,62 @@ void fit_raster(MappedGrid<Dim, Real>& grid) {
   Vector<Dim, Real> spacing;
   Vector<Dim, int> count;
   for (int i = 0; i < Dim; ++i) {
-    const double wanted = std::ceil(static_cast<double>(extent[i]) / size);
+    const double wanted = grid.rectilinear ? 1 : std::ceil(static_cast<double>(extent[i]) / size);
     count[i] = static_cast<int>(std::min(std::max(wanted, 1.0), 4.0 * grid.cell_count()));
     spacing[i] = extent[i] / static_cast<Real>(count[i]);
   }
   grid.raster = {low, spacing, count};
 }
 
-/// Per raster cell, the first grid cell that contains its centre; beyond the grid, that of the nearest raster
-/// cell in steps between neighbours.
-template <int Dim, class Real>
-std::vector<int> start_cells(const MappedGrid<Dim, Real>& grid) {
+/// Per raster cell, the grid cell that contains its centre; beyond the grid, that of the nearest raster cell
+/// in steps between neighbours. Walks to the centres begin in a cell with its own centre in the raster cell,
+/// or else in that of a neighbour, so that they are short.
+template <class Grid>
+std::vector<int> start_cells(const Grid& grid) {
+  constexpr int Dim = Grid::dimension;
+  using Real = typename Grid::real;
   const auto& raster = grid.raster;
   std::vector<int> start(static_cast<size_t>(raster.cell_count()), -1), known;
+  if (grid.rectilinear) return std::vector<int>(start.size(), 0);
+  const auto entry = [&](int raster_cell) -> int& { return start[static_cast<size_t>(raster_cell)]; };
   const auto assign = [&](int raster_cell, int cell) {
-    auto& entry = start[static_cast<size_t>(raster_cell)];
-    if (entry >= 0) return;
-    entry = cell;
+    entry(raster_cell) = cell;
     known.push_back(raster_cell);
   };
-  const auto centre = [](const Vector<Dim, int>& ijk) {
-    Vector<Dim, Real> q;
-    for (int i = 0; i < Dim; ++i) q[i] = static_cast<Real>(ijk[i]) + Real(0.5);
-    return q;
-  };
-  for (int n = 0; n < grid.cell_count(); ++n) {
-    typename MappedGrid<Dim, Real>::Place place{grid.cell_ijk(n), Vector<Dim, Real>::zero(), false};
-    const auto cell = grid.cell(place.cell);
-    Vector<Dim, int> first, last;
-    for (int i = 0; i < Dim; ++i) {
-      Real low = cell.corner[0][i], high = low;
-      for (const auto& x : cell.corner) {
-        low = std::min(low, x[i]);
-        high = std::max(high, x[i]);
-      }
-      const auto number = [&](Real x) {
-        const Real q = (x - raster.lower[i]) * raster.inverse_spacing[i];
-        return std::min(std::max(static_cast<int>(q), 0), raster.cells[i] - 1);
-      };
-      first[i] = number(low);
-      last[i] = number(high);
-    }
-    auto at = first;
-    for (bool more = true; more;) {
-      Vector<Dim, Real> x = centre(at);
-      for (int i = 0; i < Dim; ++i) x[i] = raster.lower[i] + x[i] * raster.spacing[i];
-      if (grid.inside(x, place)) assign(raster.cell_index(at), n);
-      more = false;
-      for (int i = 0; i < Dim && !more; ++i) {
-        more = ++at[i] <= last[i];
-        if (!more) at[i] = first[i];
-      }
-    }
-  }
-  for (int n = 0; n < grid.cell_count(); ++n) {  // cells smaller than the raster's
-    const auto cell = grid.cell(grid.cell_ijk(n));
-    assign(raster.cell_index(raster.cell_containing(cell.at(centre(Vector<Dim, int>::zero())).x)), n);
-  }
-  for (size_t next = 0; next < known.size(); ++next) {
-    const int cell = start[static_cast<size_t>(known[next])];
-    const auto ijk = raster.cell_ijk(known[next]);
+  const auto centre_of = [&](int raster_cell) {
+    const auto ijk = raster.cell_ijk(raster_cell);
+    Vector<Dim, Real> x;
     for (int i = 0; i < Dim; ++i)
-      for (const int step : {-1, 1}) {
-        auto neighbour = ijk;
-        neighbour[i] += step;
-        if (neighbour[i] >= 0 && neighbour[i] < raster.cells[i]) assign(raster.cell_index(neighbour), cell);
-      }
+      x[i] = raster.lower[i] + (static_cast<Real>(ijk[i]) + Real(0.5)) * raster.spacing[i];
+    return x;
+  };
+  const auto spread = [&](const auto& take) {  // to neighbours, and to theirs
+    for (size_t next = 0; next < known.size(); ++next) {
+      const int cell = entry(known[next]);
+      const auto ijk = raster.cell_ijk(known[next]);
+      for (int i = 0; i < Dim; ++i)
+        for (const int step : {-1, 1}) {
+          auto neighbour = ijk;
+          neighbour[i] += step;
+          if (neighbour[i] < 0 || neighbour[i] >= raster.cells[i]) continue;
+          const int n = raster.cell_index(neighbour);
+          if (entry(n) < 0) take(n, cell);
+        }
+    }
+  };
+  Vector<Dim, Real> middle;
+  for (int i = 0; i < Dim; ++i) middle[i] = Real(0.5);
+  for (int n = 0; n < grid.cell_count(); ++n) {
+    const int r = raster.cell_index(raster.cell_containing(grid.cell(grid.cell_ijk(n)).at(middle).x));
+    if (entry(r) < 0) assign(r, n);
   }
+  const auto walk = [&](int raster_cell, int from) { return grid.walk(centre_of(raster_cell), from); };
+  for (const int r : known)
+    if (const auto place = walk(r, entry(r)); place.found) entry(r) = grid.cell_index(place.cell);
+  spread([&](int r, int from) {
+    if (const auto place = walk(r, from); place.found) assign(r, grid.cell_index(place.cell));
+  });
+  spread(assign);
   return start;
 }
 
@@ -166,6 +171,7 @@ MappedMesh<Dim, Real, Device> make_mapped_mesh(const Vector<Dim, int>& cells, co
   }
   grid.position = places.data();
   mapped::check_cells(grid);
+  grid.rectilinear = mapped::is_rectilinear(grid);
   mapped::fit_raster(grid);
   const auto start = mapped::start_cells(grid);
 

@@ -3,9 +3,12 @@
 /// A logically regular grid of multilinear cells with its nodes at any place, such as a graded or a polar
 /// one.
 ///
-/// The cell that contains a point is found by a walk: a uniform raster over the grid's bounding box names a
-/// cell nearby; as long as the point lies beyond a face of the cell, the walk goes to the neighbour there.
-/// The answer depends on nothing but the point, so that all kernels of a step agree about it.
+/// The cell that contains a point is found by bisection along each axis where the grid is rectilinear, and
+/// else by a walk: a uniform raster over the grid's bounding box names a cell nearby; as long as the point
+/// lies beyond a face of the cell, the walk goes on in that direction, in strides that double until one is too
+/// long, and are halved from then on. Either looks at a number of cells that grows as the logarithm of those
+/// along an axis, however graded the grid. The answer depends on nothing but the point, so that all kernels
+/// of a step agree about it.
 #pragma once
 
 #include <vsb/physics/multilinear.hpp>
@@ -22,6 +25,7 @@ struct MappedGrid : CellNumbering<Dim> {
   const Real* position;           ///< [node][Dim], m
   const int* start_cell;          ///< [raster cell]: where a walk to a point of it starts
   UniformGrid<Dim, Real> raster;  ///< covers the bounding box
+  bool rectilinear;               ///< coordinate i of a node depends on its number along axis i alone
   Real tolerance;                 ///< how far outside [0, 1] round-off may take local coordinates
 
   /// Where a node is, m.
@@ -54,6 +58,7 @@ struct MappedGrid : CellNumbering<Dim> {
   /// round-off outside the grid counts as inside.
   KOKKOS_FUNCTION Place locate(const Vector<Dim, Real>& x) const {
     if (!raster.contains(x)) return {Vector<Dim, int>::zero(), Vector<Dim, Real>::zero(), false};
+    if (rectilinear) return bisect(x);
     const Place place = walk(x);
     return place.found ? place : search(x);
   }
@@ -65,13 +70,34 @@ struct MappedGrid : CellNumbering<Dim> {
     return locate(x).cell;
   }
 
-  /// From the raster's cell to the one that contains x. Not found where the walk is stopped by a face of the
-  /// grid, or goes in circles: cells far from rectangles may do that.
+  /// In a rectilinear grid. A point on a face belongs to the cell above it.
+  KOKKOS_FUNCTION Place bisect(const Vector<Dim, Real>& x) const {
+    Place place{Vector<Dim, int>::zero(), Vector<Dim, Real>::zero(), false};
+    for (int i = 0; i < Dim; ++i) {
+      const int stride = this->node_stride(i);
+      int last = cells[i];
+      while (last - place.cell[i] > 1) {
+        const int middle = (place.cell[i] + last) / 2;
+        (x[i] < position[middle * stride * Dim + i] ? last : place.cell[i]) = middle;
+      }
+    }
+    inside(x, place);
+    return place;
+  }
+
+  /// From the raster's cell to the one that contains x.
   KOKKOS_FUNCTION Place walk(const Vector<Dim, Real>& x) const {
-    Place place{this->cell_ijk(start_cell[raster.cell_index(raster.cell_containing(x))]),
-                Vector<Dim, Real>::zero(), false};
-    int most_hops = 0;
-    for (int i = 0; i < Dim; ++i) most_hops += 2 * cells[i];
+    return walk(x, start_cell[raster.cell_index(raster.cell_containing(x))]);
+  }
+  /// From a given cell. Not found where the walk is stopped by a face of the grid, or goes in circles: cells
+  /// far from rectangles may do that, and points outside.
+  KOKKOS_FUNCTION Place walk(const Vector<Dim, Real>& x, int start) const {
+    Place place{this->cell_ijk(start), Vector<Dim, Real>::zero(), false};
+    auto stride = Vector<Dim, int>::zero();  // the last one along an axis; negative: backwards
+    bool halve[Dim] = {};                    // whether one was too long
+    int most_hops = 0;                       // many more than a walk that gets there takes
+    for (int i = 0; i < Dim; ++i)
+      for (int n = cells[i]; n > 0; n /= 2) most_hops += 8;
     for (int hop = 0; hop <= most_hops; ++hop) {
       if (inside(x, place)) return place;
       int axis = -1;
@@ -85,7 +111,15 @@ struct MappedGrid : CellNumbering<Dim> {
         }
       }
       if (axis < 0) break;
-      place.cell[axis] += place.xi[axis] < Real(0) ? -1 : 1;
+      const int direction = place.xi[axis] < Real(0) ? -1 : 1, before = direction * stride[axis];
+      halve[axis] = halve[axis] || before < 0;
+      const int length = math::max(1, halve[axis] ? math::abs(before) / 2 : 2 * before);
+      stride[axis] = direction * length;
+      place.cell[axis] = math::max(0, math::min(place.cell[axis] + stride[axis], cells[axis] - 1));
+      if (halve[axis] && length == 1) {  // from here anew
+        halve[axis] = false;
+        stride[axis] = 0;
+      }
     }
     place.found = false;
     return place;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/units.hpp"
+
 namespace vsb::app {
 
 namespace {
@@ -50,10 +52,44 @@ void visit_points(const UniformLattice& lattice, const Scene& scene, const BodyS
       }
 }
 
+/// Angles about the centre of a polar grid.
+struct Sector {
+  double first, last;  ///< radians
+};
+
+/// The angles of a box's points; a whole turn where the centre is one of them.
+Sector sector_of(const AxisBox& box, const Point& center) {
+  const double x[] = {box.lower[0] - center[0], box.upper[0] - center[0]},
+               y[] = {box.lower[1] - center[1], box.upper[1] - center[1]};
+  if (x[0] <= 0 && x[1] >= 0 && y[0] <= 0 && y[1] >= 0) return {-pi, pi};
+  const double mx = 0.5 * (x[0] + x[1]), my = 0.5 * (y[0] + y[1]), middle = std::atan2(my, mx);
+  Sector sector{middle, middle};
+  for (const double cx : x)
+    for (const double cy : y) {  // the box lies on one side of a line through the centre
+      const double angle = middle + std::atan2(mx * cy - my * cx, mx * cx + my * cy);
+      sector.first = std::min(sector.first, angle);
+      sector.last = std::max(sector.last, angle);
+    }
+  return sector;
+}
+
+/// The cells along an axis that an interval of its coordinate may reach, and one more on either side, beside
+/// those of the range.
+void add_cells(const std::vector<double>& nodes, double low, double high, long long& first, long long& last) {
+  if (high < nodes.front() || low > nodes.back()) return;
+  const auto node = [&](double x) { return std::lower_bound(nodes.begin(), nodes.end(), x) - nodes.begin(); };
+  const auto cells = static_cast<long long>(nodes.size()) - 1;
+  const auto from = std::max<long long>(0, node(low) - 2), to = std::min<long long>(cells, node(high) + 1);
+  const bool none = first >= last;
+  first = none ? from : std::min(first, from);
+  last = none ? to : std::max(last, to);
+}
+
 /// The cells of a mapped grid that a body may reach, and one more on either side.
 LatticeRange cells_around(const GridSpec& grid, int dimension, const AxisBox& bounds) {
   LatticeRange range;
   for (size_t i = 0; i < static_cast<size_t>(dimension); ++i) {
+    range.last[i] = 0;
     double low = bounds.lower[i], high = bounds.upper[i];
     if (grid.polar && i == 0) {
       double nearest[2], farthest[2];
@@ -64,14 +100,20 @@ LatticeRange cells_around(const GridSpec& grid, int dimension, const AxisBox& bo
       low = std::hypot(nearest[0], nearest[1]);
       high = std::hypot(farthest[0], farthest[1]);
     }
-    range.last[i] = grid.cells[i];
-    if (grid.polar && i == 1) continue;  // all around
-    const auto& nodes = grid.coordinates[i];
-    const auto node = [&](double x) {
-      return std::lower_bound(nodes.begin(), nodes.end(), x) - nodes.begin();
-    };
-    range.first[i] = std::max<long long>(0, node(low) - 2);
-    range.last[i] = std::min<long long>(grid.cells[i], node(high) + 1);
+    if (!grid.polar || i != 1) {
+      add_cells(grid.coordinates[i], low, high, range.first[i], range.last[i]);
+      continue;
+    }
+    const double reach = grid.coordinates[0].back();
+    AxisBox box = bounds;
+    for (size_t c = 0; c < 2; ++c) {
+      box.lower[c] = std::max(box.lower[c], grid.center[c] - reach);
+      box.upper[c] = std::min(box.upper[c], grid.center[c] + reach);
+    }
+    const Sector sector = sector_of(box, grid.center);
+    for (int turn = -3; turn <= 3; ++turn)  // angles of a grid are between -2 pi and 2 pi
+      add_cells(grid.coordinates[i], sector.first + turn * 2 * pi, sector.last + turn * 2 * pi,
+                range.first[i], range.last[i]);
   }
   return range;
 }

@@ -78,6 +78,33 @@ TEST_CASE("on a rectilinear or polar grid, too") {
   scene.bodies[0].region = counted(ball({10, 0, 0}, 0.1), asked = 0);
   CHECK_THROWS_AS(place_particles(scene), SetupError);  // no lattice point in it
   CHECK(asked <= 2 * 37 * 26 + estimated);
+
+  // Many angles: those of the body alone, wherever the grid begins to count them.
+  for (const double begin : {-2 * pi, -pi, -0.25, 0.0, 2.0}) {
+    scene.grid.cells[1] = 6000;
+    scene.grid.coordinates[1].clear();
+    for (int k = 0; k <= 6000; ++k) scene.grid.coordinates[1].push_back(begin + 0.999 * 2 * pi * k / 6000);
+    for (int k = 0; k < 12; ++k) {
+      const double angle = 0.5 + k * pi / 6;  // off the seams
+      scene.bodies[0].region = counted(ball({9 * std::cos(angle), 9 * std::sin(angle), 0}, 0.1), asked = 0);
+      const double size = 0.01 * 9 * 0.999 * 2 * pi / 6000;
+      CHECK_THAT(static_cast<double>(place_particles(scene).position.size()),
+                 vsb::test::WithinRel(pi * 0.01 / size, 0.02));
+      CHECK(asked <= 2 * 24 * 32 + estimated);
+    }
+  }
+  // Boxes about the centre, and without an end.
+  scene.grid.cells[1] = 36;
+  scene.grid.coordinates[1].clear();
+  for (int k = 0; k <= 36; ++k) scene.grid.coordinates[1].push_back(1.5 * pi * k / 36);
+  scene.grid.coordinates[0] = {1, 2, 3};
+  scene.grid.cells[0] = 2;
+  for (const auto& [region, count] :
+       {std::pair(ball({}, 2.6), 72), std::pair(half_space({}, {1, 0, 0}), 48), std::pair(half_space({}, {0, 1, 0}), 24),
+        std::pair(half_space({1e-3, 0, 0}, {-1, 0, 0}), 24), std::pair(ball({-2.5, 0, 0}, 0.11), 2)}) {
+    scene.bodies[0].region = region;
+    CHECK(place_particles(scene).position.size() == static_cast<size_t>(count));
+  }
 }
 
 TEST_CASE("particles start where they were placed, and a cut lattice is cut once") {

@@ -54,6 +54,19 @@ MappedMesh<2, double, Host> ring(int radial, int around) {
   });
 }
 
+/// A grid that counts the walks that it is asked for, and the cells that are looked at without one.
+struct CountingGrid : MappedGrid<2, double> {
+  long long& asked;
+  Place walk(const Vector<2, double>& x, int start) const {
+    ++asked;
+    return MappedGrid<2, double>::walk(x, start);
+  }
+  bool inside(const Vector<2, double>& x, Place& place) const {
+    ++asked;
+    return MappedGrid<2, double>::inside(x, place);
+  }
+};
+
 }  // namespace
 
 TEMPLATE_TEST_CASE_SIG("the inverse map undoes the forward map in distorted cells", "",
@@ -356,4 +369,67 @@ TEST_CASE("a strongly graded grid: every cell's centre is found in it") {
     REQUIRE(place.found);
     CHECK((place.cell[0] == cell[0] && place.cell[1] == cell[1]));
   });
+}
+
+TEST_CASE("thousands of graded nodes along an axis: few cells are looked at for a point") {
+  // Cell sizes over seven decades. Walks end after some dozens of cells, or are not found.
+  for (const double shear : {0.0, 0.3}) {
+    const auto mesh = make_mapped_mesh<double, Host>(Vector<2, int>{{1600, 4}}, [&](const Vector<2, int>& ij) {
+      const double x = std::pow(1.01, ij[0] - 1600);
+      return Vector<2, double>{{x, 1. * ij[1] + shear * x}};
+    });
+    CHECK(mesh.grid.rectilinear == (shear == 0));
+    for_each_cell(mesh.grid, [&](const Vector<2, int>& cell) {
+      const auto x = forward(mesh.grid, cell, {{0.25, 0.75}});
+      const auto place = mesh.grid.rectilinear ? mesh.grid.locate(x) : mesh.grid.walk(x);
+      REQUIRE(place.found);
+      CHECK((place.cell[0] == cell[0] && place.cell[1] == cell[1]));
+      CHECK_THAT(place.xi[0], WithinAbs(0.25, 1e-7));
+    });
+  }
+}
+
+TEST_CASE("a rectilinear grid: points on faces, at its ends and outside") {
+  const double x[] = {-1, 0.25, 0.5, 3, 7};
+  const auto mesh = make_mapped_mesh<double, Host>(Vector<2, int>{{4, 2}}, [&](const Vector<2, int>& ij) {
+    return Vector<2, double>{{x[ij[0]], 2. * ij[1] * ij[1]}};
+  });
+  const auto& grid = mesh.grid;
+  CHECK(grid.raster.cell_count() == 1);
+  for (int i = 0; i <= 4; ++i) {
+    const auto place = grid.locate({{x[i], 1}});
+    REQUIRE(place.found);
+    CHECK(place.cell[0] == std::min(i, 3));
+    CHECK(place.xi[0] == (i == 4 ? 1 : 0));
+  }
+  CHECK(grid.contains({{-1 - 1e-15, 8}}));
+  CHECK_FALSE(grid.contains({{-1.01, 8}}));
+  CHECK_FALSE(grid.contains({{0, 8.01}}));
+  CHECK_FALSE(grid.contains({{std::nan(""), 1}}));
+  CHECK_FALSE(make_distorted_mesh<2, double, Host>(0.2).grid.rectilinear);
+}
+
+TEST_CASE("slender sectors: the start cells are found by a few walks for each of the raster's cells") {
+  for (const auto& [radial, around] : {std::pair(2000, 4), std::pair(4, 2000), std::pair(90, 90)}) {
+    const auto mesh = ring(radial, around);
+    long long asked = 0;
+    const auto& raster = mesh.grid.raster;
+    const auto start = mapped::start_cells(CountingGrid{mesh.grid, asked});
+    CHECK(asked <= 5 * raster.cell_count());
+    int found = 0;
+    for (int r = 0; r < raster.cell_count(); ++r) {
+      CHECK(start[static_cast<size_t>(r)] == mesh.grid.start_cell[r]);
+      const auto ij = raster.cell_ijk(r);
+      const Vector<2, double> centre{{raster.lower[0] + (ij[0] + 0.5) * raster.spacing[0],
+                                      raster.lower[1] + (ij[1] + 0.5) * raster.spacing[1]}};
+      const double r2 = dot(centre, centre);
+      if (r2 > 8.99 || r2 < 1.01 || (centre[0] > -0.01 && centre[1] < 0.01)) continue;
+      const auto place = mesh.grid.walk(centre);
+      if (around > 4) REQUIRE(place.found);
+      if (!place.found) continue;  // beyond a chord of the outer circle
+      CHECK(mesh.grid.cell_index(place.cell) == start[static_cast<size_t>(r)]);
+      ++found;
+    }
+    CHECK(found > raster.cell_count() / 3);
+  }
 }
