@@ -10,6 +10,7 @@
 #include "files/build_info.hpp"
 #include "files/hdf5_file.hpp"
 #include "run/kokkos_session.hpp"
+#include "run/place_particles.hpp"
 #include "run/run_scene.hpp"
 #include "run/simulation.hpp"
 #include "run/standard_streams.hpp"
@@ -38,6 +39,13 @@ void print_info() {
   fmt::print("vsb\n");
   for (const auto& [name, value] : build_info()) fmt::print("  {:<16} {}\n", name, value);
   if (threads_at_hand() > 0) fmt::print("  {:<16} {}\n", "threads", threads_at_hand());
+}
+
+/// Places the particles of a scene, keeps them for its run, and tells how many they are.
+int count_placed(const Scene& scene, PlacedParticles& placed, PlacedParticles*& kept) {
+  placed = place_particles(scene);
+  kept = &placed;
+  return static_cast<int>(placed.position.size());
 }
 
 }  // namespace
@@ -129,8 +137,11 @@ int main(int argc, char** argv) {
       if (study_options.directory.empty()) study_options.directory = "results/" + cases.name + "-study";
       check_threads(threads);
       study_options.run = [threads](const Scene& scene, const RunOptions& run_options) {
-        const KokkosSession kokkos(choose_threads(threads, [&] { return count_particles(scene); }).threads);
-        return run_scene(scene, run_options);
+        auto with_particles = run_options;
+        PlacedParticles placed;
+        const KokkosSession kokkos(
+            choose_threads(threads, [&] { return count_placed(scene, placed, with_particles.placed); }).threads);
+        return run_scene(scene, with_particles);
       };
       return run_study(cases, study_options);
     }
@@ -139,14 +150,15 @@ int main(int argc, char** argv) {
       throw SceneError("--static takes no steps, so there is none to --resume from; give one of the two");
     const Scene scene = read_scene(scene_path, overrides);
     if (options.directory.empty()) options.directory = "results/" + scene.name;
-    const auto choice = choose_threads(threads, [&] { return count_particles(scene); });
+    PlacedParticles placed;
+    const auto choice = choose_threads(threads, [&] { return count_placed(scene, placed, options.placed); });
     options.threads = choice.why;
     const KokkosSession kokkos(choice.threads);
     if (*check || !options.quiet)
       if (const auto advice = open_setting_advice(scene, scene_path, overrides); !advice.empty())
         fmt::print("{}{}\n", *check ? "# " : "", advice);
     if (*run) return run_scene(scene, options).code;
-    if (*check) check_scene(scene);
+    if (*check) check_scene(scene, options.placed);
     return exit_done;
   } catch (const SceneError& error) {
     fmt::print(stderr, "vsb: {}\n", error.what());

@@ -6,16 +6,16 @@
 
 namespace vsb::app {
 
-std::unique_ptr<Simulation> make_simulation(const Scene& scene) {
-  if (scene.grid.mapped()) return make_instance<InstanceOf::mapped>(scene);
-  if (scene.single_precision) return make_instance<InstanceOf::linear_float>(scene);
+std::unique_ptr<Simulation> make_simulation(const Scene& scene, PlacedParticles* placed) {
+  if (scene.grid.mapped()) return make_instance<InstanceOf::mapped>(scene, placed);
+  if (scene.single_precision) return make_instance<InstanceOf::linear_float>(scene, placed);
   switch (scene.method.basis) {
     case BasisKind::ugimp:
-      return make_instance<InstanceOf::ugimp>(scene);
+      return make_instance<InstanceOf::ugimp>(scene, placed);
     case BasisKind::quadratic_bspline:
-      return make_instance<InstanceOf::quadratic_bspline>(scene);
+      return make_instance<InstanceOf::quadratic_bspline>(scene, placed);
     default:
-      return make_instance<InstanceOf::linear>(scene);
+      return make_instance<InstanceOf::linear>(scene, placed);
   }
 }
 

@@ -7,7 +7,7 @@ namespace vsb::app {
 
 RunResult run_balance(const Scene& scene, const RunOptions& options) {
   refuse_unsettled_loads(scene, "a balance under the final loads");
-  const auto simulation = make_simulation(scene);
+  const auto simulation = make_simulation(scene, options.placed);
   Results results(options.directory, scene);
   results.begin(-1, !options.progress_only);
   RunFigures figures;

@@ -109,7 +109,7 @@ void print_stage(const Scene& scene, const Stages& stages) {
 }
 
 RunResult run(const Scene& scene, const RunOptions& options) {
-  const auto simulation = make_simulation(scene);
+  const auto simulation = make_simulation(scene, options.placed);
   std::optional<Stages> stages;
   if (scene.removal) stages.emplace(scene, *simulation);
   TractionWatch watch(scene, *simulation);
@@ -365,8 +365,8 @@ RunResult run_scene(const Scene& scene, const RunOptions& options) {
   }
 }
 
-void check_scene(const Scene& scene) {
-  const auto simulation = make_simulation(scene);
+void check_scene(const Scene& scene, PlacedParticles* placed) {
+  const auto simulation = make_simulation(scene, placed);
   print_advice(scene, *simulation);
   fmt::print("# {} particles, {} boundary nodes, {:.3g} MB of state\n", simulation->particle_count(),
              simulation->boundary_nodes(), static_cast<double>(simulation->state_bytes()) / 1e6);

@@ -30,6 +30,7 @@ struct RunOptions {
   Solution solution = Solution::steps;
   std::string threads;  ///< how many, and why, for the screen
   bool resume = false;  ///< continue from the directory's checkpoint, if there is one
+  PlacedParticles* placed = nullptr;  ///< where they have been placed already; the run takes them
 };
 
 struct RunResult {
@@ -42,7 +43,7 @@ struct RunResult {
 /// LeftGrid after the last state and the summary are written.
 RunResult run_scene(const Scene& scene, const RunOptions& options);
 
-/// Prints the resolved scene and what a run of it would cost; writes no file. Throws SetupError.
-void check_scene(const Scene& scene);
+/// Prints the resolved scene and what a run of it would cost; writes no file. `placed`: as of RunOptions. Throws SetupError.
+void check_scene(const Scene& scene, PlacedParticles* placed);
 
 }  // namespace vsb::app

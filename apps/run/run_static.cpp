@@ -53,7 +53,7 @@ double largest_displacement(const ParticleReader& particles) {
 RunResult run_static(const Scene& scene, const RunOptions& options) {
   using Clock = std::chrono::steady_clock;
   refuse_moving_scenes(scene);
-  const auto simulation = make_simulation(scene);
+  const auto simulation = make_simulation(scene, options.placed);
   Results results(options.directory, scene);
   const InterruptGuard guard;
   const bool reports = !options.quiet && !options.progress_only;

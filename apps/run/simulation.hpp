@@ -172,8 +172,8 @@ std::string state_hash(Simulation& simulation);
 /// Particles the scene will have; needs no Kokkos. Throws SetupError.
 int count_particles(const Scene& scene);
 
-/// Places the particles, finds the boundary nodes and checks that every traction acts somewhere. Throws
-/// SetupError.
-std::unique_ptr<Simulation> make_simulation(const Scene& scene);
+/// Places the particles, finds the boundary nodes and checks that every traction acts somewhere. `placed`:
+/// the particles, where they have been placed already, which the simulation takes. Throws SetupError.
+std::unique_ptr<Simulation> make_simulation(const Scene& scene, PlacedParticles* placed = nullptr);
 
 }  // namespace vsb::app

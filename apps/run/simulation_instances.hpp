@@ -11,6 +11,6 @@ namespace vsb::app {
 enum class InstanceOf { linear, linear_float, mapped, ugimp, quadratic_bspline };
 
 template <InstanceOf instance>
-std::unique_ptr<Simulation> make_instance(const Scene& scene);
+std::unique_ptr<Simulation> make_instance(const Scene& scene, PlacedParticles* placed);
 
 }  // namespace vsb::app

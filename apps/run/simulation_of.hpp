@@ -39,14 +39,14 @@ namespace vsb::app {
 template <int Dim, class Real, class Basis>
 class SimulationOf final : public Simulation {
  public:
-  explicit SimulationOf(const Scene& scene)
+  SimulationOf(const Scene& scene, PlacedParticles* taken)
       : scene_(scene),
         origin_(local_origin(scene)),
         owned_basis_(scene, origin_),
         basis_(owned_basis_.basis),
         on_host_(basis_on_host(scene, origin_, owned_basis_)),
         loads_(scene, origin_) {
-    const auto placed = place_particles(scene_);
+    const auto placed = taken ? std::move(*taken) : place_particles(scene_);
     if (!scene.grid.mapped() && Basis::reach == 0) refuse_on_grid_lines(scene_, placed);
     placed_count_ = static_cast<int>(placed.position.size());
     starts_ = placed.starts;
