@@ -13,8 +13,12 @@ namespace vsb::app {
 
 namespace {
 
-/// Round-off of a place in single precision, in cells, up to which steps are of use: where particle kernels
-/// add what a particle moves in a step to its place, and where lanes add it to its place in the cell.
+/// Round-off of a place in single precision, in cells, up to which steps are of use. Measured on a column of
+/// 16 cells that settles by 0.023 cells under its own weight, at the far end of longer and longer grids,
+/// beside double precision. Particle kernels add what a particle moves in a step to its place: the settlement
+/// is off by 0.6, 1.9, 1.7, 31 and 40 % with 240, 840 (the limit), 1680, 3360 and 6720 cells, and with 16800
+/// nothing settles. Lanes add it to the place in the cell: the stress is off by 3e-6 at any length, and the
+/// settlement by what a frame can tell, 0.1, 0.4 and 0.6 % with 840, 3360 and 16800 (the limit) cells.
 constexpr double coarsest_place = 5e-5, coarsest_place_on_lanes = 1e-3;
 
 }  // namespace
@@ -72,7 +76,7 @@ void refuse_unresolved_places(const Scene& scene, bool on_cell_lanes) {
     throw SetupError(fmt::format(
         "precision = \"float\" does not resolve this grid: along {} it goes up to {:.6g} m, {:.6g} cells of "
         "{:.6g} m, where the round-off of a place is {:.2g} cells, and {:g} is what steps on {} bear; use "
-        "precision = \"double\", larger cells or a shorter grid",
+        "precision = \"double\", larger cells (grid.spacing) or a shorter grid (grid.upper)",
         scene.grid.axis_name(i), farthest, farthest / h, h, coarseness, limit,
         on_cell_lanes ? "cell lanes" : "particle kernels"));
   }

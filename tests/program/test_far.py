@@ -152,11 +152,23 @@ class FarFromTheOrigin(ProgramTest):
         self.assertEqual(done.returncode, 2)
         self.assertIn("at the open face y_max, to (500000.062, 4200006.062) m,", done.stderr)
 
+    def test_at_the_limit_of_single_precision(self):
+        """A column that hangs at the far end of a grid of 800 cells."""
+        for engine in ENGINES:
+            near, far = (self.results(column((0.0, 0.0), precision, engine).replace("[0.0, -9.81]", "[0.0, 9.81]")
+                                      .replace("y_min", "y_max").replace("upper = [4.0, 6.0]", "upper = [4.0, 200.0]")
+                                      .replace("lower = [0.0, 0.0], upper = [4.0, 4.0]", "lower = [0.0, 196.0], upper = [4.0, 200.0]"),
+                                      f"{engine}-{precision}")[0] for precision in ("double", "float"))
+            self.assertAlmostEqual(far["largest_displacement"] / near["largest_displacement"], 1, delta=0.03)
+            self.assertAlmostEqual(far["smallest_principal_stress"] / near["smallest_principal_stress"], 1, delta=1e-4)
+
     def test_what_single_precision_does_not_resolve_is_refused(self):
         long_grid = column((0.0, 0.0), "float", "particles").replace("upper = [4.0, 6.0]", "upper = [4.0, 6000.0]")
         done = vsb("run", self.write(long_grid), "--out", self.folder / "long")
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertRegex(done.stderr, r'precision = "float" does not resolve this grid: along y it goes up to 6000 m, 24000 cells')
+        for key in ('precision = "double"', "grid.spacing", "grid.upper"):
+            self.assertIn(key, done.stderr)
         self.assertFalse((self.folder / "long").exists())
 
     def test_coordinates_beyond_double_precision_are_refused(self):
