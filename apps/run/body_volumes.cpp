@@ -44,7 +44,7 @@ std::vector<BodyVolume> body_volumes(const Scene& scene, const PlacedParticles& 
   const auto shapes = shape_volumes(scene);
   std::vector<BodyVolume> volumes;
   for (size_t b = 0; b < shapes.size(); ++b) {
-    BodyVolume volume{0, shapes[b]};
+    BodyVolume volume{0, shapes[b].value, shapes[b].error};
     for (int p = placed.bodies[b].first; p < placed.bodies[b].last; ++p)
       volume.particles += placed.volume[static_cast<size_t>(p)];
     volumes.push_back(volume);
@@ -66,7 +66,7 @@ std::vector<std::string> volume_advice(const Scene& scene, const std::vector<Bod
   std::vector<std::string> advice;
   for (size_t b = 0; b < volumes.size(); ++b) {
     const auto& body = scene.bodies[b];
-    if (std::abs(volumes[b].surplus()) <= noteworthy) continue;
+    if (std::abs(volumes[b].surplus()) <= noteworthy + volumes[b].shape_error / volumes[b].shape) continue;
     advice.push_back(fmt::format("the particles of body '{}' have {}, its shape {} ({}): {}", body.name,
                                  amount(scene, body, volumes[b].particles),
                                  amount(scene, body, volumes[b].shape), percent(volumes[b].surplus()),

@@ -13,6 +13,7 @@ namespace vsb::app {
 
 struct BodyVolume {
   double particles = 0, shape = 0;  ///< m^3 (area in 2D, length in 1D)
+  double shape_error = 0;           ///< what the shape's may be off, about
 
   /// By how much the particles have more, as a share of the shape's.
   double surplus() const { return particles / shape - 1; }
@@ -25,7 +26,8 @@ std::vector<BodyVolume> body_volumes(const Scene& scene, const PlacedParticles& 
 void print_body_volumes(const Scene& scene, const std::vector<BodyVolume>& volumes,
                         const std::string& prefix);
 
-/// A sentence for each body whose particles have a hundredth more or less than its shape.
+/// A sentence for each body whose particles have a hundredth more or less than its shape, and more than the
+/// shape's volume may be off.
 std::vector<std::string> volume_advice(const Scene& scene, const std::vector<BodyVolume>& volumes);
 
 }  // namespace vsb::app

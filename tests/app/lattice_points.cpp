@@ -100,8 +100,9 @@ TEST_CASE("on a rectilinear or polar grid, too") {
   scene.grid.coordinates[0] = {1, 2, 3};
   scene.grid.cells[0] = 2;
   for (const auto& [region, count] :
-       {std::pair(ball({}, 2.6), 72), std::pair(half_space({}, {1, 0, 0}), 48), std::pair(half_space({}, {0, 1, 0}), 24),
-        std::pair(half_space({1e-3, 0, 0}, {-1, 0, 0}), 24), std::pair(ball({-2.5, 0, 0}, 0.11), 2)}) {
+       {std::pair(ball({}, 2.6), 72), std::pair(half_space({}, {1, 0, 0}), 48),
+        std::pair(half_space({}, {0, 1, 0}), 24), std::pair(half_space({1e-3, 0, 0}, {-1, 0, 0}), 24),
+        std::pair(ball({-2.5, 0, 0}, 0.11), 2)}) {
     scene.bodies[0].region = region;
     CHECK(place_particles(scene).position.size() == static_cast<size_t>(count));
   }
@@ -131,6 +132,24 @@ TEST_CASE("particles start where they were placed, and a cut lattice is cut once
   add_body(scene, ball({}, 2), 3, BoundaryBoxes::keep).jitter = {0.4, 7};
   const auto placed = place_particles(scene);
   CHECK(starts_of(scene, placed) == placed.position);
+}
+
+TEST_CASE("a simulation takes the particles that were placed to count them, and cuts no lattice again") {
+  auto scene = grid_scene(2, -3, 0.5, 12);
+  long long asked = 0;
+  add_body(scene, counted(ball({0.1, 0}, 2.03), asked), 2, BoundaryBoxes::cut2x2);
+  scene.time.dt = 1e-4;
+  make_simulation(scene);
+  const auto with_placing = asked;
+  asked = 0;
+  auto placed = place_particles(scene);
+  const auto placing = asked;
+  CHECK(placing > 1000);
+  const auto count = static_cast<int>(placed.position.size());
+  asked = 0;
+  CHECK(make_simulation(scene, &placed)->particle_count() == count);
+  CHECK(asked == with_placing - placing);
+  CHECK(placed.position.empty());
 }
 
 TEST_CASE("bodies whose bounds are apart are not asked about each other's particles") {
