@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "run/interrupt.hpp"
+#include "run/kokkos_session.hpp"
 #include "run/progress.hpp"
 #include "run/rest_forecast.hpp"
 #include "run/run_balance.hpp"
@@ -19,6 +20,7 @@
 #include "run/scene_advice.hpp"
 #include "run/stages.hpp"
 #include "run/traction_watch.hpp"
+#include "run/waiting_threads.hpp"
 
 namespace vsb::app {
 
@@ -202,6 +204,14 @@ RunResult run(const Scene& scene, const RunOptions& options) {
     write_checkpoint();
     return false;
   };
+  double processor = 0;
+  bool threads_looked_at = false;
+  const auto look_at_threads = [&] {
+    const auto waiting = waiting_threads(threads_at_hand(), processor, figures.seconds);
+    if (waiting.empty()) return;
+    progress.finish();
+    if (reports) fmt::print("{}\n", waiting);
+  };
   const auto look_at_tractions = [&] {
     for (const auto& loss : watch.look()) {
       progress.finish();
@@ -214,6 +224,7 @@ RunResult run(const Scene& scene, const RunOptions& options) {
     if (done && stages) done = end_stage();
     while (!done) {
       const auto begin = Clock::now();
+      const double processor_before = processor_seconds();
       const long long stop = next_stop(scene, simulation->step(), last_step());
       while (simulation->step() < stop && !interrupt_requested()) {
         const auto steps = std::min<long long>(stop - simulation->step(),
@@ -222,6 +233,11 @@ RunResult run(const Scene& scene, const RunOptions& options) {
         figures.particle_steps += static_cast<double>(steps) * simulation->particle_count();
       }
       figures.seconds += seconds_since(begin);
+      processor += processor_seconds() - processor_before;
+      if (!threads_looked_at && figures.seconds >= seconds_to_look_at_threads) {
+        threads_looked_at = true;
+        look_at_threads();
+      }
       const long long step = simulation->step();
       if (step % health_interval == 0 || interrupt_requested()) simulation->check_health();
       if (step % health_interval == 0 || step >= last_step()) look_at_tractions();

@@ -15,10 +15,12 @@ namespace {
 
 constexpr double shortest_interval = 1e-6;  ///< of a line, in shares of the box that it crosses
 constexpr double unresolved = 1e-9;  ///< of the volume: boxes smaller than this together are not halved
-constexpr double agreement = 3e-4;   ///< of the volume: between estimates with fewer and with more boxes
+constexpr double agreement = 1.5e-4;   ///< of the volume: between estimates with fewer and with more boxes
 constexpr size_t boxes_in_plane = 512, boxes_in_space = 1024, fewest_boxes = 128;
-constexpr size_t most_boxes = 8;    ///< times as many, at last
-constexpr double farthest_end = 4;  ///< that is looked for, in edges of the box
+constexpr size_t most_boxes = 8;       ///< times as many, at last
+constexpr double shortest_way = 1e-4;  ///< to an end, in shares of the box
+constexpr double thin = 0.1;           ///< chords, in shares of the box: one point tells of all
+constexpr double farthest_end = 4;     ///< that is looked for, in edges of the box
 constexpr double gauss[] = {0.5 - 0.5 / 1.7320508075688772, 0.5 + 0.5 / 1.7320508075688772};
 
 double length(const AxisBox& box, size_t axis) {
@@ -109,14 +111,18 @@ class Chords {
   /// The chords of a line, each with the share that its axis has in its points.
   double counted_length(const AxisBox& line, size_t axis) {
     chords_.clear();
-    add_intervals(within_, line, axis, shortest(axis), chords_);
+    add_intervals(within_, line, axis, shortest_interval * length(box_, axis), chords_);
     double sum = 0;
-    for (const auto& chord : chords_)
-      for (const double at : gauss) {
+    for (const auto& [lower, upper] : chords_) {
+      const auto share_at = [&](double at) {
         Point x = line.lower;
-        x[axis] = chord.lower + at * (chord.upper - chord.lower);
-        sum += 0.5 * (chord.upper - chord.lower) * share(x, axis);
-      }
+        x[axis] = lower + at * (upper - lower);
+        return share(x, axis);
+      };
+      sum += (upper - lower) * (upper - lower < thin * length(box_, axis)
+                                    ? share_at(0.5)
+                                    : 0.5 * (share_at(gauss[0]) + share_at(gauss[1])));
+    }
     return sum;
   }
 
@@ -142,7 +148,7 @@ class Chords {
     return nearest;
   }
 
-  double shortest(size_t axis) const { return shortest_interval * length(box_, axis); }
+  double shortest(size_t axis) const { return shortest_way * length(box_, axis); }
 
   const Region &within_, &near_;
   const AxisBox& box_;

@@ -6,10 +6,10 @@
 /// all others. In those that are left, four lines per transverse direction along every axis are halved in the
 /// same way down to a millionth: no wall is too thin to be met by a line that crosses it. Each line counts
 /// with the share of what it meets that is its own (class Chords). When there are enough boxes, the volume is
-/// taken, and again with their halves, until two such figures agree to 3e-4 (or there are 8 times as many).
+/// taken, and again with their halves, until two such figures agree to 1.5e-4 (or there are 8 times as many).
 /// The error is what the surface does between two lines: 1e-5 of the volume of a ball, a disc or a shell of
-/// either, however thin; some 1e-3 of walls with a free edge. Where walls meet, their edge is counted twice
-/// until boxes are as small as the wall is thick: twice the thickness over the length at most.
+/// either, however thin; 1e-3, at most 3e-3, of walls with a free edge. Where walls meet, their edge is
+/// counted twice until boxes are as small as the wall is thick: twice the thickness over the length at most.
 #pragma once
 
 #include "scene/scene.hpp"
