@@ -116,7 +116,7 @@ namespace {
 toml::array bodies_of(const Scene& scene, const std::vector<BodyVolume>& volumes) {
   toml::array bodies;
   for (size_t b = 0; b < volumes.size(); ++b) {
-    const auto& [particles, shape] = volumes[b];
+    const auto& [particles, shape, shape_error] = volumes[b];
     const double density = scene.bodies[b].density;
     bodies.push_back(toml::table{{"name", scene.bodies[b].name},
                                  {"particle_volume", particles},
