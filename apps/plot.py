@@ -9,7 +9,7 @@
 
 Reads the particle frames and summary.json of a results directory; writes NAME_fields.png (2D and 3D scenes) and
 NAME_profiles.png (1D scenes, and those with an exact solution) beside them and prints their paths; with --field NAME_FIELD.png,
-with --animation NAME_FIELD.gif (and .mp4, with ffmpeg at hand). Of a run that was interrupted it draws the last frame that is
+of a frame that is asked for NAME_fields_STEP.png, with --animation NAME_FIELD.gif (and .mp4, with ffmpeg at hand). Of a run that was interrupted it draws the last frame that is
 whole, and says so. Formulas of exact solutions are not repeated here: frames carry the exact fields.
 
 Fields are those of the frames (vsb check: output.fields): a number per particle by its name (equivalent_plastic_strain), a
@@ -394,13 +394,14 @@ def main():
         return
     frame = run.frame(arguments.step, arguments.frame)
     frame.needs(*([] if arguments.field else ["cauchy_stress"]))
+    of_frame = "" if arguments.step is None and arguments.frame is None else f"_{frame.step:06d}"
     drawings = {}
     if frame.dimension == 1 or (errors_of(frame) and not arguments.field):
         drawings["profiles"] = draw_profiles
     if frame.dimension > 1:
         drawings["fields"] = draw_fields
     for kind, draw in drawings.items():
-        path = frame.directory / f"{frame.name}_{arguments.field or kind}.png"
+        path = frame.directory / f"{frame.name}_{arguments.field or kind}{of_frame}.png"
         figure = draw(frame, arguments.field)
         figure.savefig(path, dpi=arguments.dpi, bbox_inches="tight")
         plt.close(figure)

@@ -178,7 +178,11 @@ class Frames(ProgramTest):
         run = plot.Run(self.out)
         self.assertEqual([run.frame(number=n).step for n in (0, 1, -1)], [0, 10, 40])
         self.assertEqual(run.frame(step=20).step, 20)
-        self.plot("--frame", "1")
+        self.plot()
+        last = {p.name: p.read_bytes() for p in self.out.glob("*.png")}
+        self.assertEqual(self.plot("--frame", "1").stdout.strip(), str(self.out / "beam_fields_000010.png"))
+        self.assertEqual(self.plot("--step", "20", "--field", "von_mises").stdout.strip(), str(self.out / "beam_von_mises_000020.png"))
+        self.assertEqual({name: (self.out / name).read_bytes() for name in last}, last)
         for arguments, words in ((("--frame", "5"), "5 frames, 0 to 4"), (("--step", "7"), "of steps 0, 10, 20, 30, 40")):
             done = script("plot.py", self.out, *arguments)
             self.assertNotEqual(done.returncode, 0)
