@@ -48,12 +48,12 @@ int count_placed(const Scene& scene, PlacedParticles& placed, PlacedParticles*& 
   return static_cast<int>(placed.position.size());
 }
 
-}  // namespace
+std::string refuse_empty(const std::string& directory) {
+  return directory.empty() ? "is empty: give a directory, or leave it out" : "";
+}
 
-int main(int argc, char** argv) {
-  wait_gently(argv);
-  give_back_large_arrays();
-  survive_lost_output();
+/// Does what the command line says.
+int run_command(int argc, char** argv) {
   CLI::App app{
       "vsb: material point method with tractions by the virtual stress boundary method.\n\n"
       "A scene is a TOML file; the ones to start from lie in apps/scenes. A typical session:\n"
@@ -92,7 +92,8 @@ int main(int argc, char** argv) {
 
   auto* run = app.add_subcommand("run", "Run a scene");
   add_scene_options(run);
-  run->add_option("--out", options.directory, "Directory of the results (default: results/NAME)");
+  run->add_option("--out", options.directory, "Directory of the results (default: results/NAME)")
+      ->check(refuse_empty);
   run->add_flag("--quiet", options.quiet, "Print errors only");
   run->add_flag("--resume", options.resume,
                 "Continue from the checkpoint in the results' directory, if there is one");
@@ -113,8 +114,9 @@ int main(int argc, char** argv) {
       "interrupt, it goes on where it stopped");
   study->add_option("study", study_name, "Study of apps/studies (column), or a file (path/to/mine.toml)")
       ->required();
-  study->add_option("--out", study_options.directory,
-                    "Directory of the results (default: results/NAME-study)");
+  study
+      ->add_option("--out", study_options.directory, "Directory of the results (default: results/NAME-study)")
+      ->check(refuse_empty);
   study->add_flag("--fine", fine, "Run the cases marked fine too (long)");
   add_threads(study);
   study->add_flag("--quiet", study_options.quiet, "Print failing lines only");
@@ -185,4 +187,14 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "vsb: internal error: {}\n", error.what());
     return exit_internal;
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  wait_gently(argv);
+  give_back_large_arrays();
+  survive_lost_output();
+  const int code = run_command(argc, argv);
+  return output_is_whole() || code != exit_done ? code : exit_files;
 }

@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <iostream>
 #include <string>
 
 #include "run/interrupt.hpp"
@@ -15,18 +16,23 @@ namespace vsb::app {
 
 namespace {
 
-#ifdef __GLIBC__
-/// Tells the user where there is one, once.
+bool is_whole = true;
+
+/// Tells the user where there is one, once: of a run, or of what nobody closed on purpose (`vsb info |
+/// head`).
 void output_lost(int descriptor, int error) {
   static bool told = false;
   const bool stops = request_interrupt();
-  if (told || descriptor == STDERR_FILENO || !stops) return;
+  if (descriptor == STDERR_FILENO) return;
+  is_whole = false;
+  if (told || (!stops && error == EPIPE)) return;
   told = true;
-  const std::string text =
-      std::string("vsb: standard output cannot be written (") + std::strerror(error) + "): stopping\n";
+  const std::string text = std::string("vsb: standard output cannot be written (") + std::strerror(error) +
+                           (stops ? "): stopping\n" : ")\n");
   if (::write(STDERR_FILENO, text.data(), text.size()) < 0) errno = 0;
 }
 
+#ifdef __GLIBC__
 /// Always takes all of it, so that whoever prints finds no error.
 ssize_t write_or_lose(void* cookie, const char* text, size_t size) {
   const int descriptor = *static_cast<const int*>(cookie);
@@ -62,6 +68,13 @@ void survive_lost_output() {
   std::setvbuf(stderr, nullptr, _IONBF, 0);
 #endif
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
+}
+
+bool output_is_whole() {
+  std::fflush(stdout);
+  // Help goes to std::cout, which writes to the stream that was there before.
+  if (!std::cout.flush()) output_lost(STDOUT_FILENO, errno);
+  return is_whole;
 }
 
 }  // namespace vsb::app

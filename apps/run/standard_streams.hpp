@@ -10,4 +10,7 @@ namespace vsb::app {
 /// the limit of its size (ulimit -f) is an error of writing too. Lines go out as they are printed.
 void survive_lost_output();
 
+/// Whether standard output took all that was printed so far; for the end of the program.
+bool output_is_whole();
+
 }  // namespace vsb::app
