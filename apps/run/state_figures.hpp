@@ -32,7 +32,9 @@ StateFigures state_figures(const Scene& scene, const ParticleReader& particles);
 /// By name, as above; the plastic strain where a body may yield.
 std::vector<std::pair<std::string, double>> named(const StateFigures& figures, const Scene& scene);
 
-/// The figures in a line.
-void print_state_figures(const StateFigures& figures);
+/// The figures in a line, which says where the particles' kinetic energy is not that of the nodes: of FLIP
+/// particles, velocities that cancel at every node move nothing and stay (kernels/balance.hpp).
+/// `energy_ratio` is that of the nodes.
+void print_state_figures(const StateFigures& figures, double energy_ratio);
 
 }  // namespace vsb::app

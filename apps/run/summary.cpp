@@ -154,6 +154,32 @@ toml::array traction_reports(const RunFigures& f) {
   return reports;
 }
 
+bool is_not_finite(const toml::node& node) {
+  const auto* number = node.as_floating_point();
+  return number && !std::isfinite(number->get());
+}
+
+/// Takes what is not finite out of a table, and gives its names: JSON has no number for it.
+void take_out_not_finite(toml::table& table, const std::string& path, std::vector<std::string>& names) {
+  std::vector<std::string> gone;
+  for (auto&& [key, node] : table) {
+    const std::string name(key.str());
+    if (auto* inner = node.as_table()) take_out_not_finite(*inner, path + name + ".", names);
+    bool taken = is_not_finite(node);
+    if (auto* list = node.as_array())
+      for (size_t i = 0; i < list->size(); ++i) {
+        taken = taken || is_not_finite(*list->get(i));
+        if (auto* inner = list->get(i)->as_table())
+          take_out_not_finite(*inner, fmt::format("{}{}[{}].", path, name, i), names);
+      }
+    if (taken) gone.push_back(name);
+  }
+  for (const auto& name : gone) {
+    table.erase(name);
+    names.push_back(path + name);
+  }
+}
+
 }  // namespace
 
 std::string summary_json(const Scene& scene, const RunFigures& f) {
@@ -192,8 +218,8 @@ std::string summary_json(const Scene& scene, const RunFigures& f) {
       {"provenance", provenance},
   };
   if (!f.tractions.empty()) summary.insert("tractions", traction_reports(f));
-  for (const auto& [name, value] : named(f.state, scene))
-    if (std::isfinite(value)) summary.insert(name, value);
+  if (!f.state_hash.empty())  // the state has been looked at
+    for (const auto& [name, value] : named(f.state, scene)) summary.insert(name, value);
   if (f.solution == Solution::balance)
     summary.insert("resultant", toml::table{{"load", f.share.load},
                                             {"net_force_share", f.share.net_force},
@@ -229,6 +255,15 @@ std::string summary_json(const Scene& scene, const RunFigures& f) {
   if (scene.method.void_filter)
     summary.insert("void_filter", toml::table{{"false_voids", f.void_filter.false_voids},
                                               {"dropped_nodes", f.void_filter.dropped_nodes}});
+  std::vector<std::string> not_finite;
+  take_out_not_finite(summary, "", not_finite);
+  if (!not_finite.empty()) {
+    fmt::print(stderr, "vsb: warning: not finite, and left out of summary.json: {}\n",
+               fmt::join(not_finite, ", "));
+    toml::array names;
+    for (const auto& name : not_finite) names.push_back(name);
+    summary.insert("not_finite", names);
+  }
   std::ostringstream out;
   out << toml::json_formatter{summary} << "\n";
   return out.str();
@@ -302,8 +337,9 @@ void print_report(const Scene& scene, const RunFigures& f) {
         outflow_text(scene, f.outflow), f.outflow.mass_at_start, f.mass,
         std::abs(f.outflow.mass_at_start - f.mass - f.outflow.mass_gone) / f.outflow.mass_at_start);
   const auto& b = f.balance;
-  fmt::print("force ratio {:.2e}, energy ratio {:.2e}\n", b.force_ratio, b.energy_ratio);
-  if (std::isfinite(f.state.kinetic_energy)) print_state_figures(f.state);
+  fmt::print("of the nodes: force ratio {:.2e}, energy ratio (kinetic to strain energy) {:.2e}\n",
+             b.force_ratio, b.energy_ratio);
+  if (std::isfinite(f.state.kinetic_energy)) print_state_figures(f.state, b.energy_ratio);
   if (!scene.removal) print_resultant(scene, b, "");  // the surface of the start is there no longer
   for (const auto& t : f.tractions)
     if (t.lost_at >= 0) fmt::print("lost load: {}\n", t.loss);

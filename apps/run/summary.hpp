@@ -55,7 +55,8 @@ std::vector<std::string> default_figures(const Scene& scene, Solution solution);
 /// Whether a figure is a count, or says how a run went: nothing that converges as a grid is refined.
 bool is_count(const std::string& figure);
 
-/// Errors, counts, times, resultant, memory and provenance as JSON.
+/// Errors, counts, times, resultant, memory and provenance as JSON. What is not finite is left out, named by
+/// `not_finite`, and warned of.
 std::string summary_json(const Scene& scene, const RunFigures& figures);
 
 /// Volumes of bodies with cut lattices, in a line that begins with `prefix`; nothing where there are none.

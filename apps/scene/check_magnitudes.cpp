@@ -35,8 +35,8 @@ double particle_volume(const Scene& scene, const BodySpec& body) {
 
 class Checker {
  public:
-  Checker(const Scene& scene, const TableReader& document) : document_(document) {
-    if (!scene.single_precision) return;
+  Checker(bool single_precision, const TableReader& document) : document_(document) {
+    if (!single_precision) return;
     least_ = std::numeric_limits<float>::min();
     most_ = std::numeric_limits<float>::max();
     precision_ = "float";
@@ -65,10 +65,50 @@ class Checker {
   const char* precision_ = "double";
 };
 
+/// Of exact solutions, which take squares in double precision.
+struct ComparisonChecker {
+  const Checker& run;
+  Checker of_double;
+
+  void operator()(const std::monostate&) const {}
+  void operator()(const ColumnComparison& c) const {
+    positive("the length", c.length);
+    positive("the traction", std::abs(c.traction));
+  }
+  void operator()(const CylinderComparison& c) const {
+    ring(c);
+    for (const Point& place : {c.center, c.moved})
+      for (const double x : place) any("a coordinate", x);
+  }
+  void operator()(const YieldingCylinderComparison& c) const { ring(c); }
+  void operator()(const EllipseComparison& c) const {
+    positive("a semi-axis", c.semi_major);
+    positive("a semi-axis", c.semi_minor);
+    any("the pressure", c.pressure);
+    any("the far stress", c.far_stress);
+    any("the far stress", c.far_stress * c.far_ratio);
+  }
+
+ private:
+  template <class Ring>
+  void ring(const Ring& c) const {
+    positive("the inner radius", c.inner_radius);
+    positive("the outer radius", c.outer_radius);
+    positive("the pressure", c.pressure);
+  }
+  void any(const std::string& what, double value) const {
+    if (value != 0) positive(what, std::abs(value));
+  }
+  void positive(const std::string& what, double value) const {
+    run.check_positive("compare", what, value);
+    of_double.check_positive("compare", "the square of " + what, value * value);
+  }
+};
+
 }  // namespace
 
 void check_magnitudes(const Scene& scene, const TableReader& document) {
-  const Checker checker(scene, document);
+  const Checker checker(scene.single_precision, document);
   const auto box = bounding_box(scene.grid, scene.dimension);
   for (size_t i = 0; i < static_cast<size_t>(scene.dimension); ++i) {
     checker.check("grid", "a coordinate", box.lower[i]);
@@ -93,6 +133,11 @@ void check_magnitudes(const Scene& scene, const TableReader& document) {
                   largest_stress(scene.tractions[k].field, box.lower, box.upper));
   checker.check_positive("time", "the time step dt", scene.time.dt);
   checker.check("time", "the time at the last step", scene.time.dt * static_cast<double>(scene.time.steps));
+}
+
+void check_comparison(const Scene& scene, const TableReader& document) {
+  const Checker checker(scene.single_precision, document);
+  std::visit(ComparisonChecker{checker, Checker(false, document)}, scene.compare);
 }
 
 }  // namespace vsb::app

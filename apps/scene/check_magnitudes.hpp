@@ -12,4 +12,7 @@ namespace vsb::app {
 /// or a coordinate is neither 0 nor a normal number of the scene's precision.
 void check_magnitudes(const Scene& scene, const TableReader& document);
 
+/// The same of the exact solution, of whose numbers errors take squares.
+void check_comparison(const Scene& scene, const TableReader& document);
+
 }  // namespace vsb::app

@@ -250,8 +250,8 @@ TimeSpec read_time(TableReader r, const Scene& scene) {
     const bool splines = scene.method.basis == BasisKind::quadratic_bspline;
     c.force_ratio = s.number("force_ratio", {0, 1, true, true}, splines ? static_spline_ratio : 1e-6,
                              "unbalanced force / internal force");
-    c.energy_ratio =
-        s.number("energy_ratio", {0, 1, true, true}, splines ? 1e-6 : 1e-9, "kinetic energy / strain energy");
+    c.energy_ratio = s.number("energy_ratio", {0, 1, true, true}, splines ? 1e-6 : 1e-9,
+                              "kinetic energy of the nodes / strain energy");
     c.check_every = s.integer("check_every", 1, most, 100, "steps");
     t.steps = s.integer("max_steps", 1, most, 1'000'000LL,
                         "the last step in any case; or, in place of until_static, steps");
@@ -514,6 +514,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
   refuse_outflow_beside(r, scene);
   scene.output = read_output(r.table("output"), scene);
   scene.compare = read_comparison(r, scene.bodies.front().material, scene.method.basis, scene.more_norms);
+  check_comparison(scene, r);
   for (auto& table : r.tables("published")) scene.published.push_back(read_published(table, scene));
   r.finish();
   scene.resolved = resolved.toml();

@@ -83,7 +83,34 @@ class Convergence(StudyTest):
         end = self.run_scene(scene, out="end")
         moved = last_fields(self.folder / "end")["displacement"]
         self.assertAlmostEqual(end["largest_displacement"] / max(math.hypot(*u) for u in moved), 1, delta=1e-12)
-        self.assertIn(f"largest displacement {end['largest_displacement']:.4g} m", vsb("run", scene, "--out", self.folder / "x").stdout)
+        screen = vsb("run", scene, "--out", self.folder / "x").stdout
+        self.assertIn(f"of the particles: largest displacement {end['largest_displacement']:.4g} m", screen)
+        self.assertRegex(screen, r"of the nodes: force ratio \S+, energy ratio \(kinetic to strain energy\) \S+\n")
+        self.assertRegex(screen, r"kinetic energy \S+ J\n")
+
+    def test_kinetic_energy_that_the_nodes_do_not_have_is_told(self):
+        scene = self.write("""
+            dimension = 1
+            grid = { lower = [0.0], upper = [6.0], spacing = 1.0 }
+            faces.x_min = "fixed"
+            time = { kappa = 0.5, until_static = {} }
+            method.damping = 0.3
+            [[body]]
+            shape = { box = { lower = [0.0], upper = [4.0] } }
+            particles_per_cell = 4
+            density = 1000.0
+            velocity = { value = [0.0], gradient = [[1.0]] }
+            material = { youngs_modulus = 1e6, poisson_ratio = 0.3 }
+            [[traction]]
+            pressure = 1e3
+            surface.box = { lower = [3.0], upper = [6.0] }
+            """)
+        done = vsb("run", scene, "--out", self.folder / "s")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        summary = json.loads((self.folder / "s" / "summary.json").read_text())
+        self.assertLess(summary["energy_ratio"], 1e-9)
+        self.assertGreater(summary["kinetic_energy"], 1e-6 * summary["strain_energy"])
+        self.assertRegex(done.stdout, r"kinetic energy \S+ J, in velocities that cancel at the nodes and move nothing\n")
 
     def test_plastic_strain_is_a_figure_of_bodies_that_yield(self):
         text = STUDY[:STUDY.index("case")].replace("static = true", "expect_static = false").replace("cylinder.toml", "yield-cylinder.toml")

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Input that is odd but right, and input that is wrong in a way that only shows when it is worked out: sizes, magnitudes, tables
 without a key; and the words on the screen about both."""
+import json
+import re
 import resource
 import subprocess
 import time
@@ -39,6 +41,43 @@ class Input(ProgramTest):
             self.assertTrue((self.folder / "blank" / f"{name}_000010.hdf").is_file(), name)
         # A name that the scene gives is not changed in secret.
         self.refuse('name = "my scene"\n' + GOOD, 'scene.toml:1:', 'name = "my scene"'.replace('"', "'"), "no space")
+
+    def test_comparisons_with_numbers_beyond_computing(self):
+        for solution, key, value, words in (
+                ("cylinder", "pressure", "1e308", "compare = {...}: the square of the pressure is inf"),
+                ("cylinder", "pressure", "1e-200", "compare = {...}: the square of the pressure is 0"),
+                ("cylinder", "outer_radius", "1e200", "the square of the outer radius is inf"),
+                ("cylinder", "moved", "[1e200, 0.0]", "the square of a coordinate is inf"),
+                ("column", "traction", "-1e-170", "the square of the traction is 0"),
+                ("column", "length", "1e170", "the square of the length is inf"),
+                ("ellipse", "far_stress", "1e300", "the square of the far stress is inf"),
+                ("ellipse", "far_ratio", "1e300", "the square of the far stress is inf")):
+            done = vsb("check", SCENES / f"{solution}.toml", "--set", f"compare.{key}={value}")
+            self.assertEqual(done.returncode, 2, key + done.stderr)
+            self.assertIn(words.replace("compare = {...}: ", ""), done.stderr)
+            self.assertRegex(done.stderr, r"\S+\.toml:\d+:\d+: compare")
+
+    def test_a_figure_that_is_not_finite_is_named_and_left_out(self):
+        # Its von Mises stress takes a square of 1e190 Pa.
+        text = self.changed("density", "stress = [1e190, 0.0, 0.0, 0.0, 0.0, 0.0]\ndensity")
+        text = re.sub(r"youngs_modulus = [^,]*", "youngs_modulus = 1e200", text)
+        done = vsb("run", self.write(text), "--out", self.folder / "o", "--set", "time={kappa=0.1,steps=1}")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        summary = (self.folder / "o" / "summary.json").read_text()
+        found = json.loads(summary)
+        self.assertIn("largest_von_mises", found["not_finite"])
+        for name in found["not_finite"]:
+            self.assertNotIn(name, found)
+        self.assertIn("vsb: warning: not finite, and left out of summary.json: " + ", ".join(found["not_finite"]), done.stderr)
+        self.assertNotRegex(summary.replace("not_finite", ""), r"(?i)\b(-?inf|infinity|nan)\b")
+        self.assertNotIn("not_finite", self.run_scene(self.write(GOOD), out="good"))
+
+    def test_an_empty_directory_is_refused(self):
+        for arguments in (("run", SCENES / "column.toml"), ("study", "column")):
+            for out in (("--out", ""), ("--out=",)):
+                done = vsb(*arguments, *out)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertIn("--out: is empty", done.stderr)
 
     def test_tables_without_a_key(self):
         for old, new, words in (("density", "velocity = {}\ndensity", "body[0].velocity = {}: must be a table with value"),
