@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <set>
 
 #include "files/frames.hpp"
 #include "files/hdf5_file.hpp"
@@ -16,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::int64_t checkpoint_version = 2;
+constexpr std::int64_t checkpoint_version = 3;
 
 /// Bytes into an array of a file.
 struct IntoRows final : ByteSink {
@@ -64,7 +65,7 @@ std::string name_aside(const std::string& path, const std::string& file) {
 
 Checkpoints::Checkpoints(std::string path, const Scene& scene) : path_(std::move(path)), scene_(scene) {}
 
-void Checkpoints::write(const SavedState& saved, Simulation& simulation) {
+void Checkpoints::write(const SavedState& saved, const std::string& watched, Simulation& simulation) {
   Hdf5Writer file(path_);
   file.group("checkpoint");
   file.attribute("checkpoint", "version", std::vector<std::int64_t>{checkpoint_version});
@@ -77,6 +78,7 @@ void Checkpoints::write(const SavedState& saved, Simulation& simulation) {
   IntoRows into(particles);
   simulation.save_particles(into);
   particles.finish();
+  file.text("checkpoint/watched", watched);
   if (may_lose_particles(scene_)) {
     const auto& staged = saved.staged;
     file.group("staged");
@@ -101,7 +103,10 @@ void Checkpoints::write(const SavedState& saved, Simulation& simulation) {
 }
 
 std::optional<SavedState> Checkpoints::read() {
-  if (!exists(path_) && !exists(before())) return {};
+  if (!exists(path_) && !exists(before())) {
+    refuse_another_name();
+    return {};
+  }
   std::string trouble;
   for (const auto& file : {path_, before()}) {
     try {
@@ -121,7 +126,23 @@ std::optional<SavedState> Checkpoints::read() {
   throw FileError(trouble);
 }
 
-SavedState Checkpoints::read(const std::string& path) const {
+void Checkpoints::refuse_another_name() const {
+  const fs::path path(path_);
+  std::error_code error;
+  std::set<std::string> found;
+  for (const auto& entry : fs::directory_iterator(path.parent_path(), error)) {
+    auto file = entry.path().filename();
+    if (file.extension() == ".before") file = file.stem();
+    if (file.extension() == ".checkpoint") found.insert(file.string());
+  }
+  if (found.empty()) return;
+  throw FileError(fmt::format(
+      "{}: there is no {} to resume from, but {}: give the scene its 'name', or another --out; run without "
+      "--resume to start anew",
+      path.parent_path().string(), path.filename().string(), fmt::join(found, ", ")));
+}
+
+SavedState Checkpoints::read(const std::string& path) {
   const Hdf5Reader file(path);
   const auto version = number(file, path, "checkpoint", "version");
   if (version != checkpoint_version)
@@ -135,6 +156,7 @@ SavedState Checkpoints::read(const std::string& path) const {
   SavedState saved{number(file, path, "checkpoint", "step"),
                    static_cast<size_t>(number(file, path, "checkpoint", "bytes_per_number")),
                    {}};
+  watched_ = file.text("checkpoint/watched");
   if (may_lose_particles(scene_)) {
     const auto stages = scene_.removal ? file.bytes("staged/stages") : std::vector<unsigned char>();
     saved.staged.outflow = file.integers("staged", "outflow");

@@ -17,12 +17,16 @@ class Checkpoints {
   /// `path` is that of the last one.
   Checkpoints(std::string path, const Scene& scene);
 
-  /// `saved` and the particles of the simulation. Both old ones stay until the new one is on the disk.
-  void write(const SavedState& saved, Simulation& simulation);
+  /// `saved`, what the watch over the tractions has seen, and the particles of the simulation. Both old ones
+  /// stay until the new one is on the disk.
+  void write(const SavedState& saved, const std::string& watched, Simulation& simulation);
   /// The state to resume from: that of the last one, or, where that is missing or damaged, which is said on
   /// standard error, of the one before. None where there is neither. Throws FileError where none can be read,
-  /// or for a scene that differs in more than its output and its end.
+  /// for a scene that differs in more than its output and its end, or where the directory has checkpoints of
+  /// another name alone.
   std::optional<SavedState> read();
+  /// What the watch had seen by the state that was read.
+  const std::string& watched() const { return watched_; }
   /// The particles of the state that was read.
   std::unique_ptr<ByteSource> read_particles() const;
   /// Renames the last one, so that a run that begins anew neither takes nor replaces it, and removes the one
@@ -34,11 +38,12 @@ class Checkpoints {
 
  private:
   std::string before() const { return path_ + ".before"; }
-  SavedState read(const std::string& file) const;
+  SavedState read(const std::string& file);
+  void refuse_another_name() const;
 
   std::string path_;
   const Scene& scene_;
-  std::string read_from_;
+  std::string read_from_, watched_;
   bool last_is_whole_ = false;
 };
 

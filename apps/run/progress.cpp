@@ -23,18 +23,20 @@ bool Progress::due() const {
   return !quiet_ && std::chrono::duration<double>(Clock::now() - last_).count() >= wait;
 }
 
-void Progress::report(long long step, long long made, double seconds, std::optional<long long> expected,
-                      double force_ratio, bool foreseen) {
+void Progress::report(long long step, long long made, double seconds, const ExpectedEnd& end,
+                      double force_ratio) {
   if (quiet_) return;
-  std::string line = fmt::format("step {}", step);
-  if (expected) line += fmt::format(" of {}{}", foreseen ? "about " : "", *expected);
+  const char* how = end.kind == ExpectedEnd::known      ? ""
+                    : end.kind == ExpectedEnd::foreseen ? "about "
+                                                        : "at most ";
+  std::string line = fmt::format("step {} of {}{}", step, how, end.step);
   if (made > 0 && seconds > 0) {
     const double rate = static_cast<double>(made) / seconds;
     line += fmt::format(", {:.3g} particle-steps/s", rate * particles_);
-    if (expected)
-      line += fmt::format(", {} left", duration_text(static_cast<double>(*expected - step) / rate));
+    line += fmt::format(", {}{} left", how, duration_text(static_cast<double>(end.step - step) / rate));
   }
-  line += fmt::format(", force ratio {:.2e}", force_ratio);
+  line += fmt::format(", force ratio {}{:.2e}", end.kind == ExpectedEnd::not_foreseen ? "stands at " : "",
+                      force_ratio);
   show(line);
 }
 

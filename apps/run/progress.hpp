@@ -4,7 +4,6 @@
 #pragma once
 
 #include <chrono>
-#include <optional>
 #include <string>
 
 namespace vsb::app {
@@ -12,16 +11,26 @@ namespace vsb::app {
 /// "12 s", "3 min 05 s", "2 h 10 min".
 std::string duration_text(double seconds);
 
+/// The step at which a run will end, and how that is known.
+struct ExpectedEnd {
+  enum Kind {
+    known,
+    foreseen,     ///< a guess
+    at_most,      ///< an upper limit
+    not_foreseen  ///< an upper limit: the force ratio stands where it is
+  };
+  long long step;
+  Kind kind;
+};
+
 class Progress {
  public:
   Progress(bool quiet, int particles);
 
   /// Whether it is time for another report.
   bool due() const;
-  /// `step` steps are done, of which `made` in `seconds` of this program's life; `expected` is the step at
-  /// which the run will end, where one can tell; `foreseen` where that is a guess.
-  void report(long long step, long long made, double seconds, std::optional<long long> expected,
-              double force_ratio, bool foreseen);
+  /// `step` steps are done, of which `made` in `seconds` of this program's life.
+  void report(long long step, long long made, double seconds, const ExpectedEnd& end, double force_ratio);
   /// The same for a static solution.
   void report_iteration(int iteration, double residual);
   /// Ends the line on a terminal.

@@ -42,11 +42,14 @@ void refuse_unsettled_loads(const Scene& scene, const std::string& who) {
                       traction.name));
 }
 
+void print_warnings(const std::vector<std::string>& warnings) {
+  for (const auto& warning : warnings) fmt::print(stderr, "vsb: warning: {}\n", warning);
+}
+
 void print_advice(const Scene& scene, const Simulation& simulation) {
-  for (const auto& advice : scene_advice(scene)) fmt::print(stderr, "vsb: warning: {}\n", advice);
-  for (const auto& advice : volume_advice(scene, simulation.body_volumes()))
-    fmt::print(stderr, "vsb: warning: {}\n", advice);
-  for (const auto& advice : simulation.advice()) fmt::print(stderr, "vsb: warning: {}\n", advice);
+  print_warnings(scene_advice(scene));
+  print_warnings(volume_advice(scene, simulation.body_volumes()));
+  print_warnings(simulation.advice());
 }
 
 void write_frames(Results& results, const Scene& scene, Simulation& simulation) {

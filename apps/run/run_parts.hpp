@@ -15,7 +15,10 @@ double loads_settled_at(const Scene& scene);
 /// Throws SetupError, which begins with `who`, for a load that never settles.
 void refuse_unsettled_loads(const Scene& scene, const std::string& who);
 
-/// Prints the advice about a scene and its simulation as warnings on standard error.
+/// Prints warnings on standard error.
+void print_warnings(const std::vector<std::string>& warnings);
+
+/// Prints the advice about a scene and its simulation as warnings.
 void print_advice(const Scene& scene, const Simulation& simulation);
 
 /// Writes the frames of the present state. Throws Diverged for one that is not healthy.

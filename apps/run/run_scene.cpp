@@ -10,6 +10,7 @@
 #include <limits>
 #include <optional>
 
+#include "run/force_decay.hpp"
 #include "run/interrupt.hpp"
 #include "run/kokkos_session.hpp"
 #include "run/progress.hpp"
@@ -74,33 +75,22 @@ bool is_static(const StaticCriterion& c, const BalanceReport& b) {
   return b.force_ratio <= c.force_ratio && b.energy_ratio <= c.energy_ratio;
 }
 
-/// Foresees the step at which a run until static ends: the force ratio falls exponentially once the loads are
-/// constant.
-class StaticForecast {
- public:
-  explicit StaticForecast(const StaticCriterion& criterion) : criterion_(criterion) {}
-
-  /// The force ratio at a step with constant loads.
-  void observe(long long step, double force_ratio) {
-    if (first_step_ < 0) {
-      first_step_ = step;
-      first_ratio_ = force_ratio;
-    }
-    last_step_ = step;
-    last_ratio_ = force_ratio;
+/// Since when the force ratio stands, and what helps; empty where it does not.
+std::string standing_text(const Scene& scene, const std::optional<ForceDecay::Level>& level) {
+  if (!level) return "";
+  bool may_yield = false, whole = false;
+  for (const auto& body : scene.bodies) {
+    may_yield = may_yield || is_plastic(body.material.law);
+    whole = whole || (body.boundary == BoundaryBoxes::keep && !is_irregular(body));
   }
-  std::optional<long long> end() const {
-    if (last_step_ <= first_step_ || !(last_ratio_ < first_ratio_)) return {};
-    const double decay = std::log(first_ratio_ / last_ratio_) / static_cast<double>(last_step_ - first_step_);
-    return last_step_ +
-           static_cast<long long>(std::max(0.0, std::log(last_ratio_ / criterion_.force_ratio) / decay));
-  }
-
- private:
-  StaticCriterion criterion_;
-  long long first_step_ = -1, last_step_ = -1;
-  double first_ratio_ = 0, last_ratio_ = 0;
-};
+  return fmt::format(
+      ": the force ratio stands at {:.2e} since about step {}, so that more steps will hardly help; what "
+      "may: "
+      "{}{}a larger time.until_static.force_ratio",
+      level->ratio, level->since,
+      may_yield || scene.single_precision ? "" : "the static solver (--static), which takes no steps; ",
+      whole ? "body.boundary = \"cut\"; " : "");
+}
 
 /// Prints the last stage, and after the last of all how they ended.
 void print_stage(const Scene& scene, const Stages& stages) {
@@ -123,10 +113,8 @@ RunResult run(const Scene& scene, const RunOptions& options) {
   if (options.resume) {
     if (const auto saved = checkpoints.read()) {
       simulation->restore(*saved, *checkpoints.read_particles());
-      if (stages) {
-        stages->restore(saved->staged);
-        watch.begin();
-      }
+      if (stages) stages->restore(saved->staged);
+      watch.restore(checkpoints.watched());
       resumed_step = saved->step;
       refuse_end_before(scene, resumed_step, last_step());
     } else if (!options.progress_only) {
@@ -136,7 +124,10 @@ RunResult run(const Scene& scene, const RunOptions& options) {
   const InterruptGuard guard;  // from the first file on
   results.begin(resumed_step, !options.progress_only);
   const bool reports = !options.quiet && !options.progress_only;
-  if (!options.progress_only) print_advice(scene, *simulation);
+  if (!options.progress_only) {
+    print_advice(scene, *simulation);
+    print_warnings(short_run_advice(scene));
+  }
   if (reports) {
     fmt::print("{}: {} particles, {} boundary nodes, dt {:.6g} s, {} {} steps, results in {}\n", scene.name,
                simulation->particle_count(), simulation->boundary_nodes(), scene.time.dt,
@@ -154,7 +145,7 @@ RunResult run(const Scene& scene, const RunOptions& options) {
 
   Progress progress(options.quiet, simulation->particle_count());
   const auto& criterion = scene.time.until_static;
-  StaticForecast forecast(criterion.value_or(StaticCriterion{}));
+  ForceDecay decay;
   const long long first_step = simulation->step();
   const double settled = loads_settled_at(scene);
   RunFigures figures;
@@ -166,8 +157,14 @@ RunResult run(const Scene& scene, const RunOptions& options) {
   const auto write_checkpoint = [&] {
     auto saved = simulation->saved_state();
     if (stages) saved = stages->with_stages(std::move(saved), stage_seconds());
-    checkpoints.write(saved, *simulation);
+    checkpoints.write(saved, watch.saved(), *simulation);
     clock.written();
+  };
+  const auto expected_end = [&]() -> ExpectedEnd {
+    if (!criterion) return {scene.time.steps, ExpectedEnd::known};
+    const auto end = decay.reaches(criterion->force_ratio);
+    if (end && *end <= last_step()) return {*end, ExpectedEnd::foreseen};
+    return {last_step(), decay.stands() ? ExpectedEnd::not_foreseen : ExpectedEnd::at_most};
   };
   // Whether the run, or its stage, is over at this step; called where checks are due.
   const auto ends_here = [&] {
@@ -178,7 +175,7 @@ RunResult run(const Scene& scene, const RunOptions& options) {
       if (constant_loads) {
         const auto balance = simulation->balance();
         found_static = is_static(*criterion, balance);
-        forecast.observe(step, balance.force_ratio);
+        decay.observe(step, balance.force_ratio);
       }
       if (stages) {
         const auto signs = stages->look(constant_loads);
@@ -199,7 +196,7 @@ RunResult run(const Scene& scene, const RunOptions& options) {
     if (!another) return true;
     seconds_before_stage = figures.seconds;
     found_static = false;
-    forecast = StaticForecast(*criterion);
+    decay = ForceDecay();
     watch.begin();
     write_checkpoint();
     return false;
@@ -213,10 +210,9 @@ RunResult run(const Scene& scene, const RunOptions& options) {
     if (reports) fmt::print("{}\n", waiting);
   };
   const auto look_at_tractions = [&] {
-    for (const auto& loss : watch.look()) {
-      progress.finish();
-      if (!options.progress_only) fmt::print(stderr, "vsb: warning: {}\n", loss);
-    }
+    const auto losses = watch.look();
+    if (!losses.empty()) progress.finish();
+    if (!options.progress_only) print_warnings(losses);
   };
   try {
     // A run that was over may go on if its end has changed since; one that was interrupted was not over.
@@ -248,9 +244,8 @@ RunResult run(const Scene& scene, const RunOptions& options) {
         write_checkpoint();
       }
       if (progress.due())
-        progress.report(step, step - first_step, figures.seconds,
-                        criterion ? forecast.end() : scene.time.steps, simulation->balance().force_ratio,
-                        criterion.has_value());
+        progress.report(step, step - first_step, figures.seconds, expected_end(),
+                        simulation->balance().force_ratio);
       if (done && stages) done = end_stage();
       // What is due at this step has been done by now: the run that goes on begins with the next one.
       if (!done && interrupt_requested()) {
@@ -283,8 +278,8 @@ RunResult run(const Scene& scene, const RunOptions& options) {
     }
   }
   if (left) figures.balance = simulation->balance();
-  progress.report(simulation->step(), simulation->step() - first_step, figures.seconds, simulation->step(),
-                  figures.balance.force_ratio, false);
+  progress.report(simulation->step(), simulation->step() - first_step, figures.seconds,
+                  {simulation->step(), ExpectedEnd::known}, figures.balance.force_ratio);
   progress.finish();
 
   figures.steps = simulation->step();
@@ -313,8 +308,9 @@ RunResult run(const Scene& scene, const RunOptions& options) {
   if (left) return {exit_done, figures};
   if (!scene.time.until_static || found_static || stages) return {exit_done, figures};
   if (!options.progress_only)
-    fmt::print(stderr, "vsb: not static after max_steps = {} (force ratio {:.2e}, energy ratio {:.2e})\n",
-               scene.time.steps, figures.balance.force_ratio, figures.balance.energy_ratio);
+    fmt::print(stderr, "vsb: not static after max_steps = {} (force ratio {:.2e}, energy ratio {:.2e}){}\n",
+               scene.time.steps, figures.balance.force_ratio, figures.balance.energy_ratio,
+               standing_text(scene, decay.stands()));
   return {exit_not_static, figures};
 }
 
@@ -349,11 +345,17 @@ void print_end(const Scene& scene, double extent, double per_step) {
   const char* whose = scene.removal ? "every stage" : "the run";
   fmt::print("# estimated time {} to step {:.0f}, from which on the loads are constant\n", wall(loaded),
              loaded);
-  if (const auto rest = forecast_rest(scene, extent, loaded))
+  const auto rest = forecast_rest(scene, extent, loaded);
+  if (loaded >= steps || (rest && rest->earliest >= steps))
+    fmt::print("# rest is not expected by step {}: {}\n", scene.time.steps,
+               loaded >= steps
+                   ? "the loads are not constant before"
+                   : fmt::format("from step {:.2g} on at the earliest, by method.damping", rest->earliest));
+  else if (rest)
     fmt::print(
         "# rest is expected from step {:.2g} to {:.2g} ({} to {}), by method.damping and the vibrations of a "
         "compact body of {:.3g} m; slender ones take longer\n",
-        std::min(rest->earliest, steps), std::min(rest->latest, steps), wall(std::min(rest->earliest, steps)),
+        rest->earliest, std::min(rest->latest, steps), wall(rest->earliest),
         wall(std::min(rest->latest, steps)), extent);
   else
     fmt::print("# when it comes to rest cannot be known: method.damping = 0\n");
@@ -384,6 +386,7 @@ RunResult run_scene(const Scene& scene, const RunOptions& options) {
 void check_scene(const Scene& scene, PlacedParticles* placed) {
   const auto simulation = make_simulation(scene, placed);
   print_advice(scene, *simulation);
+  print_warnings(short_run_advice(scene));
   fmt::print("# {} particles, {} boundary nodes, {:.3g} MB of state\n", simulation->particle_count(),
              simulation->boundary_nodes(), static_cast<double>(simulation->state_bytes()) / 1e6);
   const auto reason = simulation->particle_kernels_because();

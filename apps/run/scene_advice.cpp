@@ -88,6 +88,9 @@ double fewest_per_cell(const Scene& scene, const BodySpec& body) {
 /// The force ratio below which runs with B-splines hardly get.
 constexpr double least_spline_ratio = 3e-6;
 
+/// By which a load may miss its final value in the last step.
+constexpr double round_off = 1e-9;
+
 /// Of kappa with the re-map of the velocity (MUSL), however little of a cell is filled.
 double largest_stable_kappa(const Scene& scene) {
   return scene.method.basis == BasisKind::quadratic_bspline ? 1.5 : 1.3;
@@ -152,6 +155,28 @@ std::vector<std::string> scene_advice(const Scene& scene) {
     advice.push_back(
         fmt::format("time.kappa = {:.4g} is above the stability limit of about {:g}; give a smaller one",
                     scene.time.kappa, largest_stable_kappa(scene)));
+  return advice;
+}
+
+std::vector<std::string> short_run_advice(const Scene& scene) {
+  std::vector<std::string> advice;
+  const double end = scene.time.dt * static_cast<double>(scene.time.steps);
+  for (size_t k = 0; k < scene.tractions.size(); ++k) {
+    const auto& traction = scene.tractions[k];
+    const double settled = traction.time.settled_at();
+    if (!std::isfinite(settled)) continue;
+    const double last = traction.time(end), final = traction.time(settled);
+    if (std::abs(last - final) < round_off * std::abs(final)) continue;
+    const std::string share =
+        final == 0 ? fmt::format("{:.3g} times its full stress, where its final value is 0", last)
+                   : fmt::format("{:.3g} % of its final value", 100 * last / final);
+    advice.push_back(fmt::format(
+        "traction '{}' is at {} at the last possible step: {} = {} ends {} at {:.6g} s, and "
+        "traction[{}].time "
+        "is constant from {:.6g} s on",
+        traction.name, share, scene.time.until_static ? "time.until_static.max_steps" : "time.steps",
+        scene.time.steps, scene.removal ? "a stage" : "the run", end, k, settled));
+  }
   return advice;
 }
 

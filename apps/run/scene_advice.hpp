@@ -17,4 +17,7 @@ std::string units_hint(const Scene& scene);
 /// All of a scene's oddities, a sentence each.
 std::vector<std::string> scene_advice(const Scene& scene);
 
+/// On each traction that is still short of its final value at the last possible step of an explicit run.
+std::vector<std::string> short_run_advice(const Scene& scene);
+
 }  // namespace vsb::app

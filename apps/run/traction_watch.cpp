@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
+
+#include "scene/toml_reader.hpp"
 
 namespace vsb::app {
 
@@ -26,6 +29,51 @@ std::string text(const Point& v, int dimension) {
   return list;
 }
 
+toml::array array(const Point& p) {
+  return toml::array{p[0], p[1], p[2]};
+}
+
+/// The values of a table that was saved.
+class SavedTable {
+ public:
+  explicit SavedTable(const toml::node* node) : table_(node ? node->as_table() : nullptr) {
+    if (!table_) damaged();
+  }
+
+  [[noreturn]] static void damaged() {
+    throw SetupError("the checkpoint is damaged: what it says of the tractions does not fit this scene");
+  }
+  template <class T>
+  T value(const char* key) const {
+    return value<T>((*table_)[key].node());
+  }
+  long long count(const char* key, long long least, long long most) const {
+    const auto n = value<std::int64_t>(key);
+    if (n < least || n > most) damaged();
+    return n;
+  }
+  int count(const char* key) const {
+    return static_cast<int>(count(key, 0, std::numeric_limits<int>::max()));
+  }
+  Point point(const char* key) const {
+    const auto* list = (*table_)[key].as_array();
+    Point p{};
+    if (!list || list->size() != p.size()) damaged();
+    for (size_t i = 0; i < p.size(); ++i) p[i] = value<double>(list->get(i));
+    return p;
+  }
+
+ private:
+  template <class T>
+  static T value(const toml::node* node) {
+    const auto found = node ? node->value<T>() : std::nullopt;
+    if (!found) damaged();
+    return *found;
+  }
+
+  const toml::table* table_;
+};
+
 }  // namespace
 
 TractionWatch::TractionWatch(const Scene& scene, Simulation& simulation)
@@ -41,6 +89,51 @@ void TractionWatch::begin() {
     report.name = scene_.tractions[start_[n].traction].name;
     report.force_at_start = report.force = start_[n].force;
     report.part_cells_at_start = report.part_cells = start_[n].part_cells;
+  }
+}
+
+std::string TractionWatch::saved() const {
+  toml::array list;
+  for (size_t n = 0; n < start_.size(); ++n) {
+    const auto& start = start_[n];
+    const auto& report = reports_[n];
+    list.push_back(toml::table{{"traction", static_cast<std::int64_t>(start.traction)},
+                               {"load", start.load},
+                               {"force_at_start", array(start.force)},
+                               {"force", array(report.force)},
+                               {"whole_cells_at_start", start.whole_cells},
+                               {"part_cells_at_start", start.part_cells},
+                               {"part_cells", report.part_cells},
+                               {"lost_at", report.lost_at},
+                               {"loss", report.loss}});
+  }
+  return inline_toml(toml::table{{"tractions", list}});
+}
+
+void TractionWatch::restore(const std::string& saved) {
+  toml::table parsed;
+  try {
+    parsed = toml::parse("saved = " + saved);
+  } catch (const toml::parse_error&) {
+    SavedTable::damaged();
+  }
+  const auto* list = parsed["saved"]["tractions"].as_array();
+  if (!list || list->size() != start_.size()) SavedTable::damaged();
+  for (size_t n = 0; n < start_.size(); ++n) {
+    const SavedTable table(list->get(n));
+    auto& start = start_[n];
+    auto& report = reports_[n];
+    const auto traction = static_cast<long long>(start.traction);
+    table.count("traction", traction, traction);
+    start.load = table.value<double>("load");
+    start.force = report.force_at_start = table.point("force_at_start");
+    start.whole_cells = table.count("whole_cells_at_start");
+    start.part_cells = report.part_cells_at_start = table.count("part_cells_at_start");
+    report.force = table.point("force");
+    report.part_cells = table.count("part_cells");
+    report.lost_at = table.count("lost_at", -1, simulation_.step());
+    report.loss = table.value<std::string>("loss");
+    if ((report.lost_at < 0) != report.loss.empty()) SavedTable::damaged();
   }
 }
 

@@ -27,6 +27,10 @@ class TractionWatch {
 
   /// Makes the present state the start, and forgets nothing that was reported.
   void begin();
+  /// All that it has seen, as TOML.
+  std::string saved() const;
+  /// Goes on from there. Throws SetupError where that does not fit this scene.
+  void restore(const std::string& saved);
   /// A sentence for each traction of which a loss is seen for the first time.
   std::vector<std::string> look();
   const std::vector<TractionReport>& report() const { return reports_; }

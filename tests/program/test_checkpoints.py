@@ -134,6 +134,18 @@ class GoingOn(CheckpointTest):
         self.assertEqual(timeless(parts), timeless(whole))
         self.assertEqual([t for _, t in frames(self.folder / "parts")], [t for _, t in frames(self.folder / "whole")])
 
+    def test_a_checkpoint_of_another_name_is_not_passed_over(self):
+        self.column(100)
+        for rest in (("column.checkpoint", "column.checkpoint.before"), ("column.checkpoint.before",)):
+            self.checkpoint.rename(self.out / rest[0]) if len(rest) > 1 else self.checkpoint.rename(self.out / rest[-1])
+            earlier = self.contents()
+            done = self.column(200, "--resume", "--set", "name=foo", code=4)
+            self.assertIn(f"{self.out}: there is no foo.checkpoint to resume from, but column.checkpoint: ", done.stderr)
+            self.assertEqual(self.contents(), earlier)
+        self.column(200, "--resume")
+        self.assertEqual(step_of(self.checkpoint), 200)
+        self.column(50, "--set", "name=foo")  # without --resume it is another run
+
     def test_a_run_that_begins_anew_keeps_the_checkpoint_aside(self):
         self.column(150)
         kept = self.out / "column.checkpoint.step-150"
@@ -282,7 +294,7 @@ class NoRoom(CheckpointTest):
             done = subprocess.run([PROGRAM, "run", str(SCENES / "column.toml"), "--out", str(self.out), "--set", "time.steps=200",
                                    "--resume"], capture_output=True, text=True, preexec_fn=before)
             self.assertEqual(done.returncode, 4, f"{limit}: {done.returncode} {done.stderr}")
-            self.assertRegex(done.stderr, r"\Avsb: .*column\S*: .*File too large\)?\n\Z")
+            self.assertRegex(done.stderr, r"\A(vsb: warning: .*\n)?vsb: .*column\S*: .*File too large\)?\n\Z")
             now = self.contents("column*")
             self.assertEqual({name: now[name] for name in earlier if not name.endswith(".series")},
                              {name: data for name, data in earlier.items() if not name.endswith(".series")})
@@ -308,7 +320,7 @@ class NoRoom(CheckpointTest):
         if done.returncode in (1, 77):
             self.skipTest("no small disk can be mounted here: " + done.stderr)
         self.assertEqual(done.returncode, 4, done.stderr)
-        self.assertRegex(done.stderr, r"\Avsb: .*No space left on device\)?\n\Z")
+        self.assertRegex(done.stderr, r"\A(vsb: warning: .*\n)*vsb: .*No space left on device\)?\n\Z")
         self.assertEqual((left / "column.checkpoint").read_bytes(), (kept / "column.checkpoint").read_bytes())
         self.assertEqual(list(left.glob("*.part")), [])
         whole = sorted(left.glob("column_*.hdf"))
@@ -371,6 +383,34 @@ class Names(ProgramTest):
             self.assertFalse((self.folder / "named").exists())
 
 
+class LostOutput(ProgramTest):
+    FULL = "vsb: standard output cannot be written (No space left on device)"
+
+    def into(self, path, *arguments):
+        with open(path, "w") as out:
+            return subprocess.run([PROGRAM, *map(str, arguments)], stdout=out, stderr=subprocess.PIPE, text=True)
+
+    def test_a_full_device_is_told_by_every_command(self):
+        scene, out = SCENES / "column.toml", self.folder / "out"
+        study = self.write("title = 'a column'\nscene = '%s'\naxis = { name = 'E', unit = 'Pa' }\nseries = [{ name = 'one', case = [{ axis = 1, "
+                           "set = ['time.steps=10'] }] }]\n" % scene, "mine.toml")
+        for arguments in (("info",), ("check", scene), ("--help",), ("run", "--help")):
+            done = self.into("/dev/full", *arguments)
+            self.assertEqual(done.returncode, 4, (arguments, done.stderr))
+            self.assertIn(self.FULL + "\n", done.stderr)
+        for arguments in (("run", scene, "--out", out, "--set", "time.steps=100000"), ("study", study, "--out", self.folder / "study")):
+            done = self.into("/dev/full", *arguments)
+            self.assertEqual(done.returncode, 5, (arguments, done.stderr))
+            self.assertIn(self.FULL + ": stopping\n", done.stderr)
+        self.assertEqual(self.into("/dev/full", "run", scene, "--out", out, "--quiet", "--set", "time.steps=100").returncode, 0)
+
+    def test_a_reader_that_has_read_enough_is_no_news(self):
+        run = subprocess.Popen([PROGRAM, "check", str(SCENES / "column.toml")], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        run.stdout.close()
+        told = run.communicate(timeout=60)[1]
+        self.assertEqual((run.returncode, told), (4, ""))
+
+
 class Threads(ProgramTest):
     def test_more_than_there_can_be_are_refused(self):
         if "OpenMP" not in [line.split()[-1] for line in vsb("info").stdout.splitlines() if "backend" in line]:
@@ -391,6 +431,63 @@ class Threads(ProgramTest):
 
 
 class Expected(ProgramTest):
+    # A block that rests on its weight: its force ratio stands at what the particles leave.
+    STANDS = """
+dimension = 1
+grid = { lower = [0.0], upper = [6.0], spacing = 1.0 }
+faces.x_min = "fixed"
+gravity = [-10.0]
+[[body]]
+shape.box = { lower = [0.0], upper = [4.0] }
+particles_per_cell = 2
+density = 1.0
+material = { youngs_modulus = 1e6, poisson_ratio = 0.0 }
+[[traction]]
+pressure = 1.0
+surface.box = { lower = [3.0], upper = [6.0] }
+time = { ramp = %s }
+[method]
+damping = 0.2
+[time]
+kappa = 0.5
+until_static = { max_steps = 20000, force_ratio = 1e-30, check_every = 10 }
+"""
+
+    def test_a_force_ratio_that_stands_is_told(self):
+        scene = self.write(self.STANDS % 0.001)
+        done = vsb("run", scene, "--out", self.folder / "s")
+        self.assertEqual(done.returncode, 7)
+        ratio, since = re.search(r"vsb: not static after max_steps = 20000 \(.*\): the force ratio stands at (\S+) since about step (\d+), ",
+                                 done.stderr).groups()
+        self.assertLess(float(ratio), 1e-12)
+        self.assertTrue(10 <= int(since) < 14000, since)
+        for remedy in ("the static solver (--static)", 'body.boundary = "cut"', "a larger time.until_static.force_ratio"):
+            self.assertIn(remedy, done.stderr)
+        done = vsb("run", scene, "--out", self.folder / "t", "--set", "time.until_static.max_steps=100")
+        self.assertEqual(done.returncode, 7)
+        self.assertNotIn("stands", done.stderr)
+
+    def test_a_ramp_longer_than_the_run_is_told(self):
+        scene = self.write(self.STANDS % 0.5)
+        for key in ("time.until_static.max_steps", "time.steps"):
+            steps = ("--set", "time={kappa=0.5,steps=400}") if key == "time.steps" else ("--set", "time.until_static.max_steps=400")
+            end = json.loads(json.dumps(self.run_scene(scene, *steps, out=key)))["time"] if key == "time.steps" else None
+            for done in (vsb("check", scene, *steps), vsb("run", scene, "--out", self.folder / "o", "--quiet", *steps)):
+                share, until = re.search(r"warning: traction 'traction 1' is at (\S+) % of its final value at the last possible step: "
+                                         + re.escape(key) + r" = 400 ends the run at (\S+) s, and traction\[0\]\.time is constant "
+                                         r"from 0\.5 s on", done.stderr).groups()
+                self.assertAlmostEqual(float(share) / (100 * float(until) / 0.5), 1, delta=0.01)
+                if end:
+                    self.assertAlmostEqual(float(until) / end, 1, delta=1e-5)
+        told = vsb("check", scene, "--set", "traction[0].time.ramp=1e6")
+        self.assertIn("of its final value at the last possible step", told.stderr)
+        self.assertIn("# rest is not expected by step 20000: the loads are not constant before", told.stdout)
+        for time in ("traction[0].time.ramp=0.01", 'traction[0].time={sine={period=1e9,amplitude=1.0}}'):
+            steps = ("--set", "time={kappa=0.5,steps=20000}")
+            self.assertNotIn("last possible step", vsb("check", scene, *steps, "--set", time).stderr)
+        # A static solution takes the final load.
+        self.assertNotIn("last possible step", vsb("run", scene, "--static", "--out", self.folder / "s").stderr)
+
     def test_check_foresees_the_step_of_rest(self):
         for scene, *more in (("cylinder", "--set", "grid.spacing=0.5"), ("yield-cylinder",)):
             text = vsb("check", SCENES / f"{scene}.toml", *more).stdout
@@ -399,6 +496,9 @@ class Expected(ProgramTest):
             self.assertIn("# time.until_static.max_steps = ", text)
             steps = self.run_scene(scene, *more)["steps"]
             self.assertTrue(loaded < first < steps < last < 20 * steps, (scene, loaded, first, steps, last))
+        short = vsb("check", SCENES / "yield-cylinder.toml", "--set", "time.until_static.max_steps=100")
+        self.assertRegex(short.stdout, r"# rest is not expected by step 100: ")
+        self.assertNotIn("rest is expected", short.stdout)
         self.assertIn("cannot be known: method.damping = 0", vsb("check", SCENES / "cylinder.toml", "--set", "method.damping=0.0").stdout)
 
 

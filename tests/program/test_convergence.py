@@ -99,7 +99,7 @@ class Convergence(StudyTest):
             shape = { box = { lower = [0.0], upper = [4.0] } }
             particles_per_cell = 4
             density = 1000.0
-            velocity = { value = [0.0], gradient = [[1.0]] }
+            velocity = { value = [0.0], dx = [1.0] }
             material = { youngs_modulus = 1e6, poisson_ratio = 0.3 }
             [[traction]]
             pressure = 1e3

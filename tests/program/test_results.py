@@ -166,7 +166,8 @@ class Ends(ProgramTest):
         out = self.folder / "column"
         again = lambda *more: vsb("run", SCENES / "column.toml", "--out", out, "--set", "time.steps=800000", *more)
         first = vsb("run", SCENES / "column.toml", "--out", out, "--set", "time.steps=10", "--resume")
-        self.assertEqual((first.returncode, first.stderr), (0, f"vsb: no checkpoint in {out}; starting from step 0\n"))
+        self.assertEqual(first.returncode, 0)
+        self.assertTrue(first.stderr.startswith(f"vsb: no checkpoint in {out}; starting from step 0\n"), first.stderr)
         (out / "column.checkpoint").unlink()
         self.assertEqual(self.interrupt(out, signal.SIGINT), 5)
         with h5py.File(out / "column.checkpoint") as file:
@@ -179,7 +180,7 @@ class Ends(ProgramTest):
         run = lambda *more: vsb("run", SCENES / "cylinder.toml", "--out", self.folder / "c", "--quiet", *more)
         done = run("--set", "time.until_static.max_steps=100")
         self.assertEqual(done.returncode, 7)
-        self.assertRegex(done.stderr, r"^vsb: not static after max_steps = 100 \(force ratio [\d.e+-]+, energy ratio [\d.e+-]+\)\n$")
+        self.assertRegex(done.stderr, r"\n?vsb: not static after max_steps = 100 \(force ratio [\d.e+-]+, energy ratio [\d.e+-]+\)\n$")
         self.assertFalse(json.loads((self.folder / "c" / "summary.json").read_text())["static"])
         self.assertIn("7 not static", vsb("--help").stdout)
 

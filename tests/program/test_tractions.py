@@ -4,7 +4,9 @@ import json
 import re
 import unittest
 
+import h5py
 import numpy as np
+from test_checkpoints import SEAL, seal
 from vsb_program import SCENES, ProgramTest, last_fields, vsb
 
 # Water 8 m deep against an inclined face (1 : 2) on a fixed base.
@@ -119,6 +121,46 @@ class Surfaces(ProgramTest):
 
     def summary(self, out):
         return json.loads((self.folder / out / "summary.json").read_text())
+
+    def test_a_resumed_run_knows_what_was_lost(self):
+        scene = self.write(COLUMN.replace("until_static = {}", "steps = 3000"))
+        steps = lambda n: ("--set", f"time.steps={n}")
+        self.run_scene(scene, out="whole")
+        whole = self.summary("whole")["tractions"]
+        self.assertLess(abs(whole[0]["full_force"][0]), 200)
+        at = whole[0]["lost_at_step"]
+        for first in (at - 150, at + 450):
+            out = f"parts-{first}"
+            self.run_scene(scene, *steps(first), out=out)
+            earlier = self.summary(out)["tractions"]
+            self.assertEqual("lost_at_step" in earlier[0], first > at)
+            done = vsb("run", scene, "--out", self.folder / out, *steps(first), "--resume")  # no step to be done
+            self.assertEqual((done.returncode, self.summary(out)["tractions"]), (0, earlier), done.stderr)
+            self.assertEqual(done.stdout.count("lost load"), first > at)
+            done = vsb("run", scene, "--out", self.folder / out, "--resume")
+            self.assertEqual((done.returncode, self.summary(out)["tractions"]), (0, whole), done.stderr)
+            self.assertEqual(done.stderr.count("warning: at step"), first < at)
+            self.assertIn(f"lost load: at step {at},", done.stdout)
+
+    def test_what_a_checkpoint_says_of_tractions_is_checked(self):
+        scene, checkpoint = self.write(COLUMN.replace("until_static = {}", "steps = 100")), self.folder / "c" / "scene.checkpoint"
+        self.run_scene(scene, out="c")
+        good = checkpoint.read_bytes()
+        for pattern, other in (("tractions = .*", "tractions = []}"), ("tractions = .*", "tractions = 1}"), ("{ tractions", "{ traction"),
+                               ("traction = 0", "traction = 1"), ("lost_at = -1", "lost_at = 101"), ("lost_at = -1", "lost_at = 50"),
+                               ("part_cells = 0", "part_cells = -1"), ("part_cells = 0", "part_cells = 3000000000"),
+                               (r"force = \[[^]]*\]", "force = [1.0, 2.0]"), (r"load = [^,]*", "load = 'much'"), (r"load = ", "")):
+            checkpoint.write_bytes(good[:-SEAL])
+            with h5py.File(checkpoint, "r+") as file:
+                text = file["checkpoint/watched"][0].decode()
+                changed = re.sub(pattern, other, text, count=1)
+                self.assertNotEqual(changed, text, pattern)
+                del file["checkpoint/watched"]
+                file["checkpoint/watched"] = np.array([changed.encode()])
+            seal(checkpoint)
+            done = vsb("run", scene, "--out", self.folder / "c", "--resume")
+            self.assertEqual(done.returncode, 2, changed + done.stdout + done.stderr)
+            self.assertIn("the checkpoint is damaged: what it says of the tractions does not fit this scene", done.stderr)
 
     def test_a_surface_moves_with_the_material(self):
         for name in ("cell_lanes", "particles"):
