@@ -82,6 +82,8 @@ struct CentreMeans {
   static constexpr int support = 1 << Dim;
   /// Share of a cell's volume below which a function goes to a neighbour.
   static constexpr Real least_fill = Real(0.1);
+  /// Share of the largest neighbour's volume from which on a neighbour is as good a place to go.
+  static constexpr Real about_as_large = Real(0.95);
 
   UniformGrid<Dim, Real> grid;  ///< with its ghost layer
   Walls<Dim> walls;
@@ -130,20 +132,24 @@ struct CentreMeans {
   /// m^Dim
   KOKKOS_FUNCTION Real least_volume() const { return least_fill * grid.cell_volume(); }
   KOKKOS_FUNCTION bool is_small(Real volume) const { return volume > Real(0) && volume < least_volume(); }
-  /// The function that takes in that of a cell: its largest neighbour; itself where it is not small, or all
-  /// its neighbours are. volume(cell) is that of a function.
+  /// The function that takes in that of a cell: the largest neighbour, and of those about as large the
+  /// nearest; itself where it is not small, or all its neighbours are. volume(cell) is that of a function.
+  ///
+  /// Along a straight surface neighbours are equal but for round-off, which must not choose.
   template <class Volume>
   KOKKOS_FUNCTION Vector<Dim, int> home_of(const Vector<Dim, int>& cell, const Volume& volume) const {
+    if (!is_small(volume(cell))) return cell;
+    Real largest = 0;
+    for_each_neighbour(cell, [&](const auto& n) { largest = math::max(largest, volume(n)); });
     auto home = cell;
-    bool found = false;
-    Real largest = least_volume();
-    if (!is_small(volume(cell))) return home;
+    int nearest = Dim + 1;
+    const Real enough = math::max(least_volume(), about_as_large * largest);
     for_each_neighbour(cell, [&](const auto& n) {
-      const Real there = volume(n);
-      if (there < largest || (found && !(there > largest))) return;
-      largest = there;
+      int axes = 0;
+      for (int i = 0; i < Dim; ++i) axes += n[i] != cell[i];
+      if (axes >= nearest || volume(n) < enough) return;
+      nearest = axes;
       home = n;
-      found = true;
     });
     return home;
   }

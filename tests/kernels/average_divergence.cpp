@@ -58,7 +58,7 @@ struct Strained {
 };
 
 /// The mean by its formula; functions by their places, in half cells from the lowest node of the grid, and
-/// small ones with the largest around.
+/// small ones with the largest around, of those as large the nearest.
 template <int Dim>
 std::vector<double> mean_by_formula(const UniformGrid<Dim, double>& grid, bool linear,
                                     const Particles<Dim, double, Kokkos::HostSpace>& particles,
@@ -95,12 +95,24 @@ std::vector<double> mean_by_formula(const UniformGrid<Dim, double>& grid, bool l
   for (const auto& [place, own] : sums) {
     home[place] = place;
     if (own.volume >= least) continue;
+    const auto axes = [&, &from = place](const Place& other) {
+      int different = 0;
+      for (size_t i = 0; i < 3; ++i) {
+        if (std::abs(other[i] - from[i]) > 1) return 9;
+        different += other[i] != from[i];
+      }
+      return different;
+    };
     double largest = 0;
+    for (const auto& [other, s] : sums)
+      if (axes(other) < 9) largest = std::max(largest, s.volume);
+    // Of those as near, the first, x fastest.
+    using Rank = std::array<int, 4>;
+    Rank first{9};
     for (const auto& [other, s] : sums) {
-      bool next = true;
-      for (size_t i = 0; i < 3; ++i) next = next && std::abs(other[i] - place[i]) <= 1;
-      if (!next || s.volume < least || s.volume <= largest) continue;
-      largest = s.volume;
+      const Rank rank{axes(other), other[2], other[1], other[0]};
+      if (s.volume < least || s.volume < 0.95 * largest || rank[0] >= 9 || rank >= first) continue;
+      first = rank;
       home[place] = other;
     }
   }
