@@ -31,6 +31,7 @@ struct LaneState {
   bool unmarked = false;   ///< cells turned void or filled since the boundary was marked
   bool prepared = false;   ///< whether the nodes have the sums of the step to come
   bool loads_due = false;  ///< of the step to come, by add_lane_loads
+  bool loads_found = false;  ///< whether the load has been found to act at some node
 
   bool cubic() const {
     for (int i = 1; i < Dim; ++i)
@@ -113,6 +114,15 @@ void check_packed(const LaneState<Dim, Real, Device>& s) {
   require_reach<Exec, Device>();
   if (s.memory.lanes.layer_first.extent(0) == 0)
     refuse("the cell lanes hold no particles: call pack_lanes before prepare_lane_step");
+}
+
+/// Refuses a load that finds no node when it is prepared for the first time. Waits for the device.
+template <class Field, class Exec, class State>
+void check_loaded(const Exec& exec, State& s) {
+  if constexpr (Field::loaded) {
+    if (!s.loads_found && s.surface.count() == 0) vsb::check_loaded(count_loaded_nodes(exec, s));
+    s.loads_found = true;
+  }
 }
 
 /// Notes that sums are made, and what has to come before the step.
@@ -296,6 +306,7 @@ void prepare_lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const 
   detail::forget_declarations(s.boundary);
   mark_packed_lanes(exec, s);
   check_load(virtual_stress, declared_tractions(s.boundary), s.original != 0 || s.surface.count() > 0);
+  detail::check_loaded<Field>(exec, s);
   detail::sum_lanes(exec, s, detail::of_sweeps(virtual_stress, s.original));
   detail::note_prepared(s);
 }

@@ -110,6 +110,16 @@ inline void check_gauss_points(int per_direction) {
                    " Gauss points per direction: allowed are 1 to 4");
 }
 
+/// Refuses a load that finds no node at the start. `loaded`: the nodes that carry a traction.
+inline void check_loaded(int loaded) {
+  if (loaded > 0) return;
+  detail::refuse(
+      "tractions are declared, but no boundary node carries one: the method loads nodes between a cell with "
+      "particles and an empty one, so let the grid reach a cell beyond a loaded face, and declare at its nodes "
+      "(count_loaded_nodes and Occupancy::boundary_node_count tell how many are loaded); pass "
+      "NoVirtualStress{} as long as there is nothing to load");
+}
+
 /// Refuses a load that does not go with what is declared: `declared` are the tractions declared at nodes,
 /// `beside` says whether some act beside the nodes of the modified method, on surface points for example.
 template <class Field>

@@ -137,6 +137,7 @@ void prepare_lane_step(const Exec& exec, SplineLaneState<Dim, Real, Device>& s, 
   detail::forget_declarations(s.boundary);
   mark_packed_lanes(exec, s);
   check_load(virtual_stress, declared_tractions(s.boundary), false);
+  detail::check_loaded<Field>(exec, s);
   sum_lanes(exec, s, virtual_stress);
   detail::note_prepared(s);
 }

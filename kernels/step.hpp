@@ -23,6 +23,7 @@ struct State {
   ScatterWorkspace<Real, Device> remap_workspace;
   MeanDivergence<Real, Device> mean_divergence;  ///< empty unless steps average
   bool weighed = false;  ///< whether the particles have been found to have masses and volumes
+  bool loads_found = false;  ///< whether the load has been found to act at some node
 };
 
 /// Allocates the nodes and the occupancy for given particles. After particles were added or removed, or their
@@ -55,8 +56,8 @@ void check_options(const StepOptions<Dim, Real>& options) {
   if (!(options.dt > Real(0)) || !std::isfinite(options.dt))
     detail::refuse("StepOptions::dt is ", options.dt,
                    " s: set it to a time above 0 (vsb::time_step gives a stable one)");
-  if (!(options.damping >= Real(0)) || !std::isfinite(options.damping))
-    detail::refuse("StepOptions::damping is ", options.damping, ": set it to 0 or more");
+  if (!(options.damping >= Real(0) && options.damping < Real(1)))
+    detail::refuse("StepOptions::damping is ", options.damping, ": set it to 0 or more, below 1");
   for (int i = 0; i < Dim; ++i)
     if (!std::isfinite(options.gravity[i]))
       detail::refuse("StepOptions::gravity is ", options.gravity[i], " m/s^2 in direction ", i);
@@ -98,6 +99,10 @@ int step(const Exec& exec, State<Dim, Real, Device>& s, const std::vector<Body<R
   if (lost >= 0) return lost;
   check_load(virtual_stress, s.occupancy.declared | s.occupancy.cells.carried.tractions,
              s.surface.count() > 0);
+  if constexpr (Field::loaded) {
+    if (!s.loads_found && s.surface.count() == 0) check_loaded(s.occupancy.boundary_node_count);
+    s.loads_found = true;
+  }
   const int lost_point = assemble_forces(exec, s.particles, s.occupancy, s.surface, s.nodes, s.sums_workspace,
                                          basis, virtual_stress, options.gravity, options.scatter);
   if (lost_point >= 0) return s.particles.count() + lost_point;

@@ -64,6 +64,7 @@ template <int Dim, class Real, class State>
 LaneEngine<Dim, Real, State>::LaneEngine(const Setup& setup, const SurfacePoints<Dim, Real, Device>& surface)
     : setup_(setup) {
   set_grid(state_, setup.grid);
+  state_.loads_found = true;  // a resumed load may have left its region
   state_.memory.walls = setup.walls;
   state_.memory.lanes.state_size = setup.state_size;
   state_.memory.lanes.particle_count = setup.particles;

@@ -208,6 +208,7 @@ class SimulationOf final : public Simulation {
         states.emplace_back();
         states.back().traction = k;
         states.back().load = resultants_[k].load;
+        states.back().exact_force = resultants_[k].force;
       }
     if (states.empty()) return states;
     loads_.set_full(scene_);
@@ -409,6 +410,7 @@ class SimulationOf final : public Simulation {
         allocate_bodies<Dim, Real, Device>(bodies_, has_lanes && particle_kernels_because_.empty());
     auto& state = memory->state;
     state = make_state(memory->block.particles, basis_);
+    state.loads_found = true;  // a resumed load may have left its region
     fix_faces(scene_, basis_, state.nodes.fixed_components);
     state.occupancy.tractions = declared_;
     state.occupancy.conservative = loads_.conservative();

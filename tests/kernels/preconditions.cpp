@@ -310,6 +310,25 @@ TEMPLATE_TEST_CASE("a step on cell lanes names what is missing", "", (LaneState<
                     containing("has 40 rows where there are 36"));
 }
 
+TEMPLATE_TEST_CASE("a load that finds no node at the start is refused", "", (LaneState<2, double, Device>),
+                   (SplineLaneState<2, double, Device>)) {
+  const int nodes = (TestType::splines ? with_ghost_layer(Block().grid) : Block().grid).node_count();
+  LaneScene<TestType> beside;  // declared in a corner of the grid
+  beside.lanes.boundary.everywhere = 0;
+  const BoundaryNodes<Device> corner("vsb::declared", static_cast<size_t>(nodes));
+  edit(corner, [](const auto& declared) { declared(0) = 1; });
+  beside.lanes.boundary.declared = corner;
+  beside.pack();
+  CHECK_THROWS_WITH(beside.prepare(), containing("let the grid reach a cell beyond a loaded face"));
+  prepare_lane_step(Exec(), beside.lanes, NoVirtualStress{});
+  // The void begins where the grid ends: a face of the body there is no boundary.
+  ParticleScene s;
+  s.basis.grid = {{{1.0, 1.0}}, {{1.0, 1.0}}, {{3, 3}}};
+  s.state = make_state(s.particles, s.basis);
+  s.declare(1);
+  CHECK_THROWS_WITH(s.step(), containing("let the grid reach a cell beyond a loaded face"));
+}
+
 TEST_CASE("tractions declared between steps on cell lanes act after prepare_lane_step") {
   LaneScene<LaneState<2, double, Device>> s;
   const BoundaryNodes<Device> declared("vsb::declared", 36);
