@@ -10,6 +10,7 @@
 #include "run/comparison.hpp"
 #include "run/recovered_stress.hpp"
 #include "run/scene_advice.hpp"
+#include "run/traction_watch.hpp"
 
 namespace vsb::app {
 
@@ -46,10 +47,11 @@ void print_warnings(const std::vector<std::string>& warnings) {
   for (const auto& warning : warnings) fmt::print(stderr, "vsb: warning: {}\n", warning);
 }
 
-void print_advice(const Scene& scene, const Simulation& simulation) {
+void print_advice(const Scene& scene, Simulation& simulation) {
   print_warnings(scene_advice(scene));
   print_warnings(volume_advice(scene, simulation.body_volumes()));
   print_warnings(simulation.advice());
+  if (simulation.step() == 0) print_warnings(resultant_advice(scene, simulation));  // not resumed
 }
 
 void write_frames(Results& results, const Scene& scene, Simulation& simulation) {

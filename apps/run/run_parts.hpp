@@ -19,7 +19,7 @@ void refuse_unsettled_loads(const Scene& scene, const std::string& who);
 void print_warnings(const std::vector<std::string>& warnings);
 
 /// Prints the advice about a scene and its simulation as warnings.
-void print_advice(const Scene& scene, const Simulation& simulation);
+void print_advice(const Scene& scene, Simulation& simulation);
 
 /// Writes the frames of the present state. Throws Diverged for one that is not healthy.
 void write_frames(Results& results, const Scene& scene, Simulation& simulation);

@@ -65,6 +65,7 @@ struct TractionState {
   size_t traction = 0;                  ///< number in the scene
   Point force{};                        ///< its resultant, N
   double load = 0;                      ///< integral of |sbar n| over its surface at the start, N
+  Point exact_force{};                  ///< the resultant of that surface, N
   int whole_cells = 0, part_cells = 0;  ///< that it loads; see kernels/loaded_cells.hpp
 };
 

@@ -18,6 +18,9 @@ constexpr double lost_share = 0.1;
 /// The resultant over the load of a closed surface, or nearly: it may grow as well as shrink by a loss.
 constexpr double closed_share = 0.5;
 
+/// The share of the load by which a resultant may differ from that of the exact surface.
+constexpr double unlike_share = 0.05;
+
 double length(const Point& v) {
   return std::hypot(v[0], v[1], v[2]);
 }
@@ -183,6 +186,23 @@ std::string TractionWatch::loss_of(const TractionState& now, const TractionState
                          ? "; its 'surface' is fixed in space and the boundary moves out of it: with "
                            "configuration = \"initial\" it moves with the material"
                          : "");
+}
+
+std::vector<std::string> resultant_advice(const Scene& scene, Simulation& simulation) {
+  std::vector<std::string> advice;
+  for (const auto& state : simulation.traction_states()) {
+    Point difference;
+    for (size_t i = 0; i < 3; ++i) difference[i] = state.force[i] - state.exact_force[i];
+    if (length(difference) <= unlike_share * state.load) continue;
+    const auto& traction = scene.tractions[state.traction];
+    advice.push_back(fmt::format(
+        "traction '{}' has the resultant ({}) N at full load, but ({}) N on the bodies' surface where it is "
+        "declared: nodes are loaded as a whole, so its 'surface' is to reach a cell beyond the loaded edge, "
+        "and where it ends within an edge, or meets another traction, half a cell more or less is loaded; "
+        "finer cells or imposition = \"boundary_particles\" end it more sharply",
+        traction.name, text(state.force, scene.dimension), text(state.exact_force, scene.dimension)));
+  }
+  return advice;
 }
 
 }  // namespace vsb::app

@@ -44,4 +44,8 @@ class TractionWatch {
   std::vector<TractionReport> reports_;
 };
 
+/// A sentence for each traction whose resultant at the start is not that of the surface where it is declared:
+/// its region ends beside an edge of a body, or within one.
+std::vector<std::string> resultant_advice(const Scene& scene, Simulation& simulation);
+
 }  // namespace vsb::app
