@@ -171,6 +171,13 @@ class FarFromTheOrigin(ProgramTest):
             self.assertIn(key, done.stderr)
         self.assertFalse((self.folder / "long").exists())
 
+    def test_small_displacements_in_single_precision(self):
+        """At the origin, too: what a step adds to the place in a cell must be more than round-off."""
+        for modulus, precision, told in (("2e7", "float", False), ("2e10", "float", True), ("2e10", "double", False)):
+            done = vsb("check", self.write(column((0.0, 0.0), precision, "auto").replace("2e7", modulus)))
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual('which precision = "float" loses' in done.stderr, told, done.stderr)
+
     def test_coordinates_beyond_double_precision_are_refused(self):
         scene = self.write(column((0.0, 2.0**50), "double", "auto"))
         done = vsb("run", scene, "--out", self.folder / "beyond")
