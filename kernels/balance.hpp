@@ -100,7 +100,8 @@ Balance<Dim> balance_of(const kernel::BalanceSums& sums, const TractionResultant
 /// particles' present positions, and brings the occupancy up to date. Waits for the device.
 template <class Exec, class Basis, class Field, int Dim, class Real, class Device>
 Balance<Dim> balance(const Exec& exec, State<Dim, Real, Device>& s, const std::vector<Body<Real>>& bodies,
-                     const Basis& basis, const Field& virtual_stress, const StepOptions<Dim, Real>& options) {
+                     const Basis& basis, const Field& virtual_stress, const StepOptions<Dim, Real>& options,
+                     const FaceCover<Device>& cover = {}) {
   auto bare = s.nodes;
   bare.sums = typename Nodes<Dim, Real, Device>::Fields("vsb::bare_sums", s.nodes.sums.extent(0),
                                                         Nodes<Dim, Real, Device>::sum_columns);
@@ -111,7 +112,7 @@ Balance<Dim> balance(const Exec& exec, State<Dim, Real, Device>& s, const std::v
                   options.gravity, options.scatter);
   const auto sums = ordered_sum<kernel::BalanceSums::size, Device>(
       exec, "vsb::node_balance", s.nodes.count(), kernel::NodeBalance<Dim, Real, Device>{s.nodes, bare.sums});
-  auto result = detail::balance_of(sums, resultant(exec, s, basis, virtual_stress));
+  auto result = detail::balance_of(sums, resultant(exec, s, basis, virtual_stress, ~TractionMask(0), cover));
   for (const auto& body : bodies) {
     const double modulus =
         std::visit([](const auto& m) { return double(m.constrained_modulus()); }, body.material);

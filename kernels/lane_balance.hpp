@@ -85,7 +85,8 @@ struct LaneStrainEnergy {
 /// the device.
 template <class Exec, class Field, int Dim, class Real, class Device>
 Balance<Dim> balance(const Exec& exec, const LaneState<Dim, Real, Device>& s, double modulus,
-                     const Field& virtual_stress, const Vector<Dim, Real>& gravity) {
+                     const Field& virtual_stress, const Vector<Dim, Real>& gravity,
+                     const FaceCover<Device>& cover = {}) {
   using Columns = decltype(s.memory.nodes.data);
   auto apart = s;
   apart.memory.lanes.mass_matrices = {};  // those of the step stay
@@ -102,7 +103,7 @@ Balance<Dim> balance(const Exec& exec, const LaneState<Dim, Real, Device>& s, do
       ordered_sum<kernel::BalanceSums::size, Device>(
           exec, "vsb::lane_node_balance", static_cast<int>(s.memory.lanes.chunk_at.extent(0)),
           kernel::LaneNodeBalance<Dim, Real, Device>{s.memory.lanes, sums, bare}),
-      resultant(exec, s, virtual_stress));
+      resultant(exec, s, virtual_stress, ~TractionMask(0), cover));
   result.strain_energy =
       ordered_sum<1, Device>(exec, "vsb::lane_strain_energy", s.memory.lanes.group_count,
                              kernel::LaneStrainEnergy<Dim, Real, Device>{s.memory.lanes, modulus})[0];

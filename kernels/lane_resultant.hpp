@@ -109,6 +109,7 @@ struct LaneResultant {
   BoundaryNodes<Device> tractions;
   Field virtual_stress;
   TractionMask among;
+  FaceCover<Device> cover;
 
   KOKKOS_FUNCTION void operator()(int g, ResultantSums<Dim>& sum) const {
     const auto& group = lanes.groups(g);
@@ -128,7 +129,8 @@ struct LaneResultant {
     for (int axis = 0; axis < Dim; ++axis)
       for (int side = 0; side < 2; ++side) {
         CoveredFace<Dim, Real> piece;
-        if (!find_covered(scene, 0, x, V, axis, side, piece) || !p.move_to_face(axis, side)) continue;
+        const Real covers = cover_of<Real>(cover, lanes.id(e), axis);
+        if (!find_covered(scene, 0, x, V, covers, axis, side, piece) || !p.move_to_face(axis, side)) continue;
         take_out_support(
             p.shape, piece, virtual_stress, virtual_stress.acting_at(x) & among, tractions,
             [&](int a) { return p.held(a, axis, side); }, place, sum);
@@ -143,14 +145,15 @@ namespace detail {
 template <class Particle, class Exec, class Source, class Field, int Dim, class Real, class Device>
 TractionResultant<Dim> lane_resultant(const Exec& exec, const LaneState<Dim, Real, Device>& s,
                                       const Source& source, const UniformGrid<Dim, Real>& scene,
-                                      const Field& field, TractionMask among) {
+                                      const Field& field, TractionMask among,
+                                      const FaceCover<Device>& cover) {
   TractionResultant<Dim> result{Vector<Dim, double>::zero(), Vector<3, double>::zero()};
   if constexpr (Field::loaded) {
     const auto& m = s.memory;
     const auto sum = ordered_sum<kernel::ResultantSums<Dim>::size, Device>(
         exec, "vsb::lane_resultant", m.lanes.group_count,
         kernel::LaneResultant<Particle, Source, Field, Dim, Real, Device>{
-            m.lanes, source, m.grid, scene, s.boundary.tractions, field, among});
+            m.lanes, source, m.grid, scene, s.boundary.tractions, field, among, cover});
     for (int i = 0; i < Dim; ++i) result.force[i] = sum[i];
     for (int i = 0; i < 3; ++i) result.torque[i] = sum[Dim + i];
   }
@@ -162,15 +165,17 @@ TractionResultant<Dim> lane_resultant(const Exec& exec, const LaneState<Dim, Rea
 /// The resultant of the tractions in `among` on the particles where they are. Waits for the device.
 template <class Exec, class Field, int Dim, class Real, class Device>
 TractionResultant<Dim> resultant(const Exec& exec, const LaneState<Dim, Real, Device>& s,
-                                 const Field& virtual_stress, TractionMask among = ~TractionMask(0)) {
+                                 const Field& virtual_stress, TractionMask among = ~TractionMask(0),
+                                 const FaceCover<Device>& cover = {}) {
   return detail::lane_resultant<kernel::LaneParticle<Dim, Real, Device>>(
-      exec, s, s.memory.nodes, s.memory.grid, virtual_stress, among);
+      exec, s, s.memory.nodes, s.memory.grid, virtual_stress, among, cover);
 }
 template <class Exec, class Field, int Dim, class Real, class Device>
 TractionResultant<Dim> resultant(const Exec& exec, const SplineLaneState<Dim, Real, Device>& s,
-                                 const Field& virtual_stress, TractionMask among = ~TractionMask(0)) {
+                                 const Field& virtual_stress, TractionMask among = ~TractionMask(0),
+                                 const FaceCover<Device>& cover = {}) {
   return detail::lane_resultant<kernel::SplineLaneParticle<Dim, Real, Device>>(exec, s, s.memory.walls,
-                                                                               s.grid, virtual_stress, among);
+                                                                               s.grid, virtual_stress, among, cover);
 }
 
 }  // namespace vsb

@@ -10,8 +10,10 @@
 /// is taken up by the face in the components that it holds. In free components it loads the body, and counts.
 ///
 /// A particle stands on a face if it is closer to it than the edge of a cube of its volume; it covers
-/// A_w = V_p / (2 d) at the distance d, as the box around it does. The whole cells of the original method
-/// (kernels/cell_virtual_stress.hpp) close at the faces too. Surface points give sbar . a each.
+/// A_w = V_p / (2 d) at the distance d, as the box around it does. Where particles are other than that, such
+/// as flat ones, or shares of boxes that a surface cuts, the caller knows better (FaceCover). The whole cells
+/// of the original method (kernels/cell_virtual_stress.hpp) close at the faces too. Surface points give
+/// sbar . a each.
 ///
 /// Reads particles, surface points and the marks of Algorithm 1. Sums have a fixed order.
 #pragma once
@@ -27,6 +29,11 @@ struct TractionResultant {
   Vector<Dim, double> force;  ///< N
   Vector<3, double> torque;   ///< about the origin, N m; in 1D zero, in 2D along z
 };
+
+/// [particle][axis]: what it covers of a face of the grid across an axis, in units of V_p / (2 d); 0: it does
+/// not stand there; below 0, and where the array is empty: as the box around it.
+template <class Device>
+using FaceCover = Kokkos::View<const float**, Device>;
 
 namespace kernel {
 
@@ -94,9 +101,17 @@ KOKKOS_FUNCTION void take_out_support(const Shape& shape, const CoveredFace<Dim,
   }
 }
 
+/// Row p, column `axis` of a FaceCover.
+template <class Real, class Device>
+KOKKOS_FUNCTION Real cover_of(const FaceCover<Device>& cover, int p, int axis) {
+  return cover.size() == 0 ? Real(-1)
+                           : static_cast<Real>(cover(static_cast<size_t>(p), static_cast<size_t>(axis)));
+}
+
 /// The area of a particle of volume V at the distance d from a face; 0 where it does not stand on it.
 template <int Dim, class Real>
-KOKKOS_FUNCTION Real covered_area(Real V, Real d) {
+KOKKOS_FUNCTION Real covered_area(Real V, Real d, Real cover) {
+  if (cover >= Real(0)) return d > Real(0) ? cover * V / (2 * d) : Real(0);
   Real cube = 1;
   for (int i = 0; i < Dim; ++i) cube *= d;
   if (!(cube < V)) return Real(0);
@@ -108,10 +123,10 @@ KOKKOS_FUNCTION Real covered_area(Real V, Real d) {
 /// false where it does not stand on it.
 template <int Dim, class Real>
 KOKKOS_FUNCTION bool find_covered(const UniformGrid<Dim, Real>& grid, int reach, const Vector<Dim, Real>& x,
-                                  Real V, int axis, int side, CoveredFace<Dim, Real>& piece) {
+                                  Real V, Real cover, int axis, int side, CoveredFace<Dim, Real>& piece) {
   const int node = side == 0 ? reach : grid.cells[axis] - reach;
   const Real face = grid.lower[axis] + static_cast<Real>(node) * grid.spacing[axis];
-  const Real area = covered_area<Dim>(V, side == 0 ? x[axis] - face : face - x[axis]);
+  const Real area = covered_area<Dim>(V, side == 0 ? x[axis] - face : face - x[axis], cover);
   if (!(area > Real(0))) return false;
   piece.x = x;
   piece.x[axis] = face;
@@ -135,7 +150,7 @@ KOKKOS_FUNCTION Vector<Dim, Real> face_normal(const Matrix<Dim, Real>& J, int ax
 
 template <int Dim, class Real>
 KOKKOS_FUNCTION bool find_covered(const MappedGrid<Dim, Real>& grid, int, const Vector<Dim, Real>& x, Real V,
-                                  int axis, int side, CoveredFace<Dim, Real>& piece) {
+                                  Real cover, int axis, int side, CoveredFace<Dim, Real>& piece) {
   auto place = grid.locate(x);
   if (place.cell[axis] != (side == 0 ? 0 : grid.cells[axis] - 1)) return false;
   const Real away = side == 0 ? place.xi[axis] : Real(1) - place.xi[axis];
@@ -144,10 +159,17 @@ KOKKOS_FUNCTION bool find_covered(const MappedGrid<Dim, Real>& grid, int, const 
   const auto cell = grid.cell(place.cell);
   const auto at = cell.at(place.xi);
   const auto n = face_normal(at.J, axis, side);
-  // Particles are cubes in local coordinates: cells may be far longer than wide.
-  const Real share = V / cell.volume(), d = dot(at.x - x, n);
-  const Real area = covered_area<Dim>(share, away) * V * away / (share * d);
-  piece = {at.x, area * n};
+  const Real d = dot(at.x - x, n);
+  Real area = 0;
+  if (cover < Real(0)) {  // a cube in local coordinates: cells may be far longer than wide
+    const Real share = V / cell.volume();
+    area = covered_area<Dim>(share, away, cover) * V * away / (share * d);
+  } else {
+    area = covered_area<Dim>(V, d, cover);
+  }
+  // Straight across to the face: the lines of a cell that end there may be inclined, as chords of arcs are.
+  const auto foot = x + d * n;
+  piece = {grid.contains(foot) ? foot : at.x, area * n};
   return area > Real(0);
 }
 
@@ -173,6 +195,7 @@ struct ParticleResultant {
   BoundaryNodes<Device> boundary;
   Field virtual_stress;
   TractionMask among;
+  FaceCover<Device> cover;
 
   KOKKOS_FUNCTION void operator()(int p, ResultantSums<Dim>& sum) const {
     const auto x = particles.position_of(p);
@@ -184,7 +207,8 @@ struct ParticleResultant {
     for (int axis = 0; axis < Dim; ++axis)
       for (int side = 0; side < 2; ++side) {
         CoveredFace<Dim, Real> piece;
-        if (!find_covered(basis.grid, Basis::reach, x, V, axis, side, piece)) continue;
+        if (!find_covered(basis.grid, Basis::reach, x, V, cover_of<Real>(cover, p, axis), axis, side, piece))
+          continue;
         const auto there = basis.shape(piece.x);
         take_out_support(
             there, piece, virtual_stress, virtual_stress.acting_at(x) & among, boundary,
@@ -281,7 +305,8 @@ struct SurfacePointResultant {
 /// The resultant of the tractions in `among`. The occupancy must be up to date. Waits for the device.
 template <class Exec, class Basis, class Field, int Dim, class Real, class Device>
 TractionResultant<Dim> resultant(const Exec& exec, const State<Dim, Real, Device>& s, const Basis& basis,
-                                 const Field& virtual_stress, TractionMask among = ~TractionMask(0)) {
+                                 const Field& virtual_stress, TractionMask among = ~TractionMask(0),
+                                 const FaceCover<Device>& cover = {}) {
   auto total = kernel::ResultantSums<Dim>::zero();
   const auto add = [&](const char* label, int count, const auto& term) {
     if (count > 0) total += ordered_sum<kernel::ResultantSums<Dim>::size, Device>(exec, label, count, term);
@@ -291,7 +316,7 @@ TractionResultant<Dim> resultant(const Exec& exec, const State<Dim, Real, Device
   if constexpr (Field::loaded)
     add("vsb::particle_resultant", s.particles.count(),
         kernel::ParticleResultant<Basis, Field, Dim, Real, Device>{s.particles, basis, held, boundary,
-                                                                   virtual_stress, among});
+                                                                   virtual_stress, among, cover});
   if constexpr (Field::cell_quadrature) {
     auto field = virtual_stress;
     field.original &= among;

@@ -33,6 +33,7 @@ class LaneEngine {
     Walls<Dim> walls;
     BoundaryNodes<Device> tractions;   ///< [node of the basis' grid]: declared
     CarriedTractions<Device> carried;  ///< those that particles carry
+    FaceCover<Device> cover;           ///< of the particles
     TractionMask conservative, original;
     int gauss_points;
     Material<Real> material;

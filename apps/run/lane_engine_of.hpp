@@ -138,7 +138,7 @@ Balance<Dim> LaneEngine<Dim, Real, State>::balance(const Loads<Dim, Real>& loads
   Balance<Dim> result{};
   if constexpr (!State::splines)
     loads.with_lane_field([&](const auto& field) {
-      result = vsb::balance(exec_, state_, modulus, field, setup_.options.gravity);
+      result = vsb::balance(exec_, state_, modulus, field, setup_.options.gravity, setup_.cover);
     });
   return result;
 }
@@ -148,7 +148,7 @@ TractionResultant<Dim> LaneEngine<Dim, Real, State>::resultant(const Loads<Dim, 
                                                                TractionMask among) const {
   TractionResultant<Dim> result{};
   loads.template with_lane_field<!State::splines>(
-      [&](const auto& field) { result = vsb::resultant(exec_, state_, field, among); });
+      [&](const auto& field) { result = vsb::resultant(exec_, state_, field, among, setup_.cover); });
   return result;
 }
 

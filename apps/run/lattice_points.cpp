@@ -42,7 +42,7 @@ void visit_points(const UniformLattice& lattice, const Scene& scene, const BodyS
     for (long long j = first[1]; j < last[1]; ++j)
       for (long long i = first[0]; i < last[0]; ++i) {
         const Index index{i, j, k};
-        LatticePoint point{{}, volume, {}};
+        LatticePoint point{{}, volume, {}, lattice.spacing};
         for (size_t c = 0; c < d; ++c) {
           point.x[c] = lattice.point(index, c);
           if (jitter.amount > 0)
@@ -130,7 +130,7 @@ void visit_points(const CellLattice& lattice, const Scene& scene, const BodySpec
       for (long long j = first[1]; j < last[1]; ++j)
         for (long long i = first[0]; i < last[0]; ++i) {
           const auto share = cell_share(scene.grid, scene.dimension, per_cell, {i, j, k});
-          visit({share.position, share.volume, {}});
+          visit({share.position, share.volume, {}, share.edges});
         }
     return;
   }
@@ -138,6 +138,8 @@ void visit_points(const CellLattice& lattice, const Scene& scene, const BodySpec
 }
 
 void visit_points(const ConcentricLattice& lattice, const Scene& scene, const BodySpec&, const Visit& visit) {
+  // The faces of a uniform grid that sectors stand on are rays, as those of constant angle of a polar one.
+  const bool polar = scene.grid.polar;
   const double dr = (lattice.outer_radius - lattice.inner_radius) / lattice.rings;
   const double dtheta = (lattice.last_angle - lattice.first_angle) / lattice.per_ring;
   const double dz = scene.dimension == 3 ? (lattice.upper - lattice.lower) / lattice.layers : 1;
@@ -149,7 +151,8 @@ void visit_points(const ConcentricLattice& lattice, const Scene& scene, const Bo
         const double z = scene.dimension == 3 ? lattice.lower + (layer + 0.5) * dz : 0;
         visit({{lattice.center[0] + r * std::cos(theta), lattice.center[1] + r * std::sin(theta), z},
                r * dr * dtheta * dz,
-               {}});
+               {},
+               {polar ? dr : r * dtheta, r * dtheta, dz}});
       }
 }
 

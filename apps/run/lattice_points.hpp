@@ -26,6 +26,7 @@ struct LatticePoint {
   Point x;        ///< m
   double volume;  ///< m^3 (area in 2D, length in 1D)
   Point shift;    ///< what the body's jitter adds to x, m
+  Point edges;    ///< of its box or sector, across the faces of the grid that these stand on, m
 };
 
 /// Visits the lattice points of a body in a fixed order: for cell and uniform lattices those in the box of

@@ -8,6 +8,7 @@
 #include "run/box_share.hpp"
 #include "run/cut_bodies.hpp"
 #include "run/cut_lattice.hpp"
+#include "run/face_cover.hpp"
 #include "run/lattice_points.hpp"
 #include "run/moment_fit.hpp"
 #include "run/needed_memory.hpp"
@@ -55,7 +56,7 @@ Point shifted(const LatticePoint& point) {
   return x;
 }
 
-/// Calls place(position, volume).
+/// Calls place(position, volume, the middle of the lattice's box, its edges).
 template <class Place>
 void place_lattice_points(const Scene& scene, size_t b, const Place& place) {
   const auto& body = scene.bodies[b];
@@ -70,7 +71,7 @@ void place_lattice_points(const Scene& scene, size_t b, const Place& place) {
                                    "make the grid larger, "
                                    "or let a face of the grid lie between two points of the lattice",
                                    body.name, x[0], x[1], x[2]));
-    place(x, point.volume);
+    place(x, point.volume, point.x, point.edges);
   });
 }
 
@@ -95,7 +96,12 @@ void place_lattice_shares(const Scene& scene, size_t b, PlacedParticles& placed,
       starts.add_whole(share.index);
     else
       starts.add_share(share.position);
-    place(share.position, share.volume);
+    Point middle{}, edges{};
+    for (size_t i = 0; i < 3; ++i) {
+      middle[i] = 0.5 * (share.box.lower[i] + share.box.upper[i]);
+      edges[i] = share.box.upper[i] - share.box.lower[i];
+    }
+    place(share.position, share.volume, middle, edges);
   });
   placed.cut.particles += volume.particles;
   placed.cut.dropped += volume.dropped;
@@ -141,7 +147,9 @@ PlacedParticles place_particles(const Scene& scene) {
   for (size_t b = 0; b < scene.bodies.size(); ++b) {
     const auto& body = scene.bodies[b];
     const auto first = placed.position.size();
-    const auto place = [&](const Point& x, double volume) {
+    const auto place = [&](const Point& x, double volume, const Point& middle, const Point& edges) {
+      add_covers(scene, body, {x, volume, middle, edges}, static_cast<int>(placed.position.size()),
+                 placed.covers);
       placed.position.push_back(x);
       placed.volume.push_back(volume);
     };

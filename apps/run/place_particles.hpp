@@ -51,10 +51,18 @@ class CutStarts {
   std::vector<Point> shares_;
 };
 
+/// What a particle covers of a face of the grid across an axis; see FaceCover of kernels/resultant.hpp.
+struct PlacedCover {
+  int particle;
+  size_t axis;
+  double cover;
+};
+
 struct PlacedParticles {
   std::vector<Point> position;
   std::vector<double> volume;
   std::vector<PlacedBody> bodies;
+  std::vector<PlacedCover> covers;  ///< where it is not that of the box around the particle
   std::vector<CutStarts> starts;  ///< [body]; of those with cut lattices
   CutVolume cut;
   MomentFit moment_fit;

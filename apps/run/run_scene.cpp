@@ -185,6 +185,12 @@ RunResult run(const Scene& scene, const RunOptions& options) {
     }
     return found_static || failed || step >= last_step();
   };
+  const auto tell = [&](const std::vector<std::string>& losses) {
+    for (const auto& loss : losses) {
+      progress.finish();
+      if (!options.progress_only) fmt::print(stderr, "vsb: warning: {}\n", loss);
+    }
+  };
   // Ends a stage of a run that removes particles, and sets out on the next one.
   const auto end_stage = [&] {
     simulation->check_health();
@@ -197,7 +203,7 @@ RunResult run(const Scene& scene, const RunOptions& options) {
     seconds_before_stage = figures.seconds;
     found_static = false;
     decay = ForceDecay();
-    watch.begin();
+    tell(watch.begin());
     write_checkpoint();
     return false;
   };
@@ -236,7 +242,7 @@ RunResult run(const Scene& scene, const RunOptions& options) {
       }
       const long long step = simulation->step();
       if (step % health_interval == 0 || interrupt_requested()) simulation->check_health();
-      if (step % health_interval == 0 || step >= last_step()) look_at_tractions();
+      if (step % health_interval == 0 || step >= last_step()) tell(watch.look());
       done = ends_here();
       if (scene.output.every > 0 && step % scene.output.every == 0) write_frame();
       if (!done && clock.due()) {

@@ -7,6 +7,7 @@
 #include <vsb/kernels/build_lanes.hpp>
 #include <vsb/kernels/update_stress.hpp>
 #include <vsb/views/particles.hpp>
+#include "run/face_cover.hpp"
 #include "run/local_origin.hpp"
 #include "run/material_of.hpp"
 #include "run/place_particles.hpp"
@@ -58,6 +59,7 @@ void fill_particles(const Scene& scene, const PlacedParticles& placed, const std
   const Point origin = local_origin(scene);
   for (size_t b = 0; b < bodies.size(); ++b) {
     const auto& body = scene.bodies[b];
+    const double filling = cell_filling(scene, body);
     for (int n = bodies[b].first; n < bodies[b].last; ++n) {
       const auto i = static_cast<size_t>(n), id = ids.empty() ? i : static_cast<size_t>(ids[i]);
       const Point& x = placed.position[id];
@@ -69,7 +71,7 @@ void fill_particles(const Scene& scene, const PlacedParticles& placed, const std
       }
       for (size_t c = 0; c < SymmetricTensor<Dim, Real>::size; ++c)
         p.cauchy_stress(i, c) = static_cast<Real>(stress[c]);
-      p.volume(i) = static_cast<Real>(placed.volume[id]);
+      p.volume(i) = static_cast<Real>(filling * placed.volume[id]);
       p.mass(i) = static_cast<Real>(body.density * placed.volume[id]);
     }
   }

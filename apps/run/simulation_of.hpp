@@ -58,6 +58,8 @@ class SimulationOf final : public Simulation {
     bodies_ = bodies_of<Dim, Real>(scene_, placed);
     declared_ = declared_tractions<Device>(scene_, basis_, loads_.on_nodes() & ~carried_tractions(scene_));
     carried_ = carried_by_particles(scene_, placed);
+    covers_ = placed.covers;
+    cover_ = cover_view();
     const auto surface = place_surface_points<Real, Device>(scene_, on_host_.basis, placed);
     surface_ = surface.points;
     resultants_ = exact_resultants(scene_, at_start_.position);
@@ -228,7 +230,7 @@ class SimulationOf final : public Simulation {
         cells = lanes_->loaded_cells(mask);
       } else {
         const auto& s = memory_->state;
-        r = with_field([&](const auto& field) { return vsb::resultant(exec_, s, basis_, field, mask); });
+        r = with_field([&](const auto& field) { return vsb::resultant(exec_, s, basis_, field, mask, cover_); });
         cells = count_loaded_cells(exec_, s.occupancy, basis_, mask);
       }
       for (int i = 0; i < Dim; ++i) state.force[static_cast<size_t>(i)] = r.force[i];
@@ -429,6 +431,21 @@ class SimulationOf final : public Simulation {
     Kokkos::deep_copy(view, host);
     return view;
   }
+  /// What the particles there cover of the faces of the grid.
+  FaceCover<Device> cover_view() const {
+    if (covers_.empty()) return {};
+    const Kokkos::View<float**, Device> view("vsb::face_cover", static_cast<size_t>(particle_count()), Dim);
+    const auto host = Kokkos::create_mirror_view(view);
+    Kokkos::deep_copy(host, -1.0f);
+    auto next = covers_.begin();  // in order of the particles, as ids are
+    for (int p = 0; p < particle_count(); ++p) {
+      while (next != covers_.end() && next->particle < id_of(p)) ++next;
+      for (; next != covers_.end() && next->particle == id_of(p); ++next)
+        host(static_cast<size_t>(p), next->axis) = static_cast<float>(next->cover);
+    }
+    Kokkos::deep_copy(view, host);
+    return view;
+  }
   void bring_back() {
     if (memory_) return;
     memory_ = allocate_memory();
@@ -447,6 +464,7 @@ class SimulationOf final : public Simulation {
     setup.tractions = declared_;
     setup.carried.particle = carried_view();
     setup.carried.tractions = carried_tractions(scene_);
+    setup.cover = cover_;
     setup.conservative = loads_.conservative();
     setup.original = loads_.original();
     setup.gauss_points = loads_.gauss_points();
@@ -491,6 +509,7 @@ class SimulationOf final : public Simulation {
     for (const int p : kept.particles) ids.push_back(id_of(p));
     const bool first_goes = ids.front() != id_of(0);
     ids_ = std::move(ids);
+    cover_ = cover_view();
     int id = 0;
     if (first_goes)
       for_each_start(scene_, starts_, [&](const Point& x) {
@@ -550,7 +569,7 @@ class SimulationOf final : public Simulation {
     const Loan loan(*this);
     locate();
     return with_field([&](const auto& field) {
-      return vsb::balance(exec_, memory_->state, bodies_, basis_, field, options_);
+      return vsb::balance(exec_, memory_->state, bodies_, basis_, field, options_, cover_);
     });
   }
 
@@ -740,6 +759,8 @@ class SimulationOf final : public Simulation {
   std::vector<int> ids_;  ///< of the particles that are left; empty before a removal
   BoundaryNodes<Device> declared_;
   std::vector<TractionMask> carried_;  ///< [particle at the start]: tractions that move with it; may be empty
+  std::vector<PlacedCover> covers_;    ///< of the particles at the start
+  FaceCover<Device> cover_;            ///< of those that are left
   SurfacePoints<Dim, Real, Device> surface_;  ///< none, unless a traction is imposed on points
   StepOptions<Dim, Real> options_{};
   OutflowReport outflow_;         ///< its masses aside

@@ -84,7 +84,8 @@ TractionWatch::TractionWatch(const Scene& scene, Simulation& simulation)
   begin();
 }
 
-void TractionWatch::begin() {
+std::vector<std::string> TractionWatch::begin() {
+  auto losses = look();
   start_ = simulation_.traction_states();
   reports_.resize(start_.size());
   for (size_t n = 0; n < start_.size(); ++n) {
@@ -93,6 +94,7 @@ void TractionWatch::begin() {
     report.force_at_start = report.force = start_[n].force;
     report.part_cells_at_start = report.part_cells = start_[n].part_cells;
   }
+  return losses;
 }
 
 std::string TractionWatch::saved() const {
@@ -166,7 +168,9 @@ std::string TractionWatch::loss_of(const TractionState& now, const TractionState
   const int cells = now.whole_cells + now.part_cells, cells_before = start.whole_cells + start.part_cells;
   const bool fewer = now.part_cells > start.part_cells || cells < (1 - lost_share) * cells_before;
   std::string what;
-  if (!closed && fewer && after < (1 - lost_share) * before)
+  if (cells == 0 && cells_before > 0)
+    what = "has no boundary node left and loads nothing";
+  else if (!closed && fewer && after < (1 - lost_share) * before)
     what = fmt::format("has lost {:.0f} % of its resultant: at full load ({}) N act, at the start ({}) N did",
                        100 * (1 - after / before), text(now.force, scene_.dimension),
                        text(start.force, scene_.dimension));
@@ -180,12 +184,15 @@ std::string TractionWatch::loss_of(const TractionState& now, const TractionState
         "start",
         now.part_cells, start.part_cells);
   if (what.empty()) return {};
+  const char* why = "";
+  if (traction.has_surface && scene_.removal)
+    why = "; let its 'surface' reach as far into the body as particles may be removed";
+  else if (traction.has_surface && !traction.carried)
+    why =
+        "; its 'surface' is fixed in space and the boundary moves out of it: with configuration = "
+        "\"initial\" it moves with the material";
   return fmt::format("at step {}, time {:.6g} s: traction '{}' {}{}", simulation_.step(), simulation_.time(),
-                     traction.name, what,
-                     traction.has_surface && !traction.carried
-                         ? "; its 'surface' is fixed in space and the boundary moves out of it: with "
-                           "configuration = \"initial\" it moves with the material"
-                         : "");
+                     traction.name, what, why);
 }
 
 std::vector<std::string> resultant_advice(const Scene& scene, Simulation& simulation) {

@@ -25,8 +25,9 @@ class TractionWatch {
   /// The present state of the simulation counts as the start.
   TractionWatch(const Scene& scene, Simulation& simulation);
 
-  /// Makes the present state the start, and forgets nothing that was reported.
-  void begin();
+  /// Makes the present state the start, and forgets nothing that was reported. Returns what look() does, of
+  /// what was lost since the start before, as particles were removed.
+  std::vector<std::string> begin();
   /// All that it has seen, as TOML.
   std::string saved() const;
   /// Goes on from there. Throws SetupError where that does not fit this scene.

@@ -97,17 +97,21 @@ bool contains(const GridSpec& grid, int dimension, const Point& x) {
 
 CellShare cell_share(const GridSpec& grid, int dimension, const std::array<int, 3>& per_cell,
                      const std::array<long long, 3>& ijk) {
-  Point q{};
+  Point q{}, edges{};
   double volume = 1;
   for (size_t i = 0; i < static_cast<size_t>(dimension); ++i) {
     const auto cell = static_cast<size_t>(ijk[i] / per_cell[i]);
     const double low = grid.coordinates[i][cell];
     const double interval = (grid.coordinates[i][cell + 1] - low) / per_cell[i];
     volume *= interval;
+    edges[i] = interval;
     q[i] = low + (static_cast<double>(ijk[i] % per_cell[i]) + 0.5) * interval;
   }
-  if (grid.polar) volume *= q[0];
-  return {place(grid, q), volume};
+  if (grid.polar) {
+    volume *= q[0];
+    edges[1] *= q[0];
+  }
+  return {place(grid, q), volume, edges};
 }
 
 }  // namespace vsb::app

@@ -52,6 +52,7 @@ bool contains(const GridSpec& grid, int dimension, const Point& x);
 struct CellShare {
   Point position;
   double volume;
+  Point edges;  ///< along the grid's axes, m
 };
 
 /// Share (i, j, k) where every cell of a mapped grid is divided into per_cell equal intervals of the axes'
