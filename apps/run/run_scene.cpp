@@ -186,10 +186,8 @@ RunResult run(const Scene& scene, const RunOptions& options) {
     return found_static || failed || step >= last_step();
   };
   const auto tell = [&](const std::vector<std::string>& losses) {
-    for (const auto& loss : losses) {
-      progress.finish();
-      if (!options.progress_only) fmt::print(stderr, "vsb: warning: {}\n", loss);
-    }
+    if (!losses.empty()) progress.finish();
+    if (!options.progress_only) print_warnings(losses);
   };
   // Ends a stage of a run that removes particles, and sets out on the next one.
   const auto end_stage = [&] {
@@ -214,11 +212,6 @@ RunResult run(const Scene& scene, const RunOptions& options) {
     if (waiting.empty()) return;
     progress.finish();
     if (reports) fmt::print("{}\n", waiting);
-  };
-  const auto look_at_tractions = [&] {
-    const auto losses = watch.look();
-    if (!losses.empty()) progress.finish();
-    if (!options.progress_only) print_warnings(losses);
   };
   try {
     // A run that was over may go on if its end has changed since; one that was interrupted was not over.

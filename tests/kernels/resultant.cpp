@@ -92,7 +92,8 @@ struct Dam {
   }
   /// By the particle kernels; `held` at the lower face.
   template <class Basis>
-  TractionResultant<2> of_particles(const Basis& basis, ComponentMask held) const {
+  TractionResultant<2> of_particles(const Basis& basis, ComponentMask held,
+                                    const FaceCover<Device>& cover = {}) const {
     auto state = make_state(block.particles, basis);
     state.occupancy.tractions = declared(basis.grid);
     edit(state.nodes.fixed_components, [&](const auto& host) {
@@ -100,13 +101,13 @@ struct Dam {
         if (basis.grid.node_position(I)[1] == 0) host(I) = held;
     });
     REQUIRE(update_occupancy(Exec(), block.particles, state.occupancy, basis) == -1);
-    return resultant(Exec(), state, basis, field);
+    return resultant(Exec(), state, basis, field, ~TractionMask(0), cover);
   }
   template <class Lanes>
-  TractionResultant<2> of_lanes(Lanes lanes, ComponentMask held) const {
+  TractionResultant<2> of_lanes(Lanes lanes, ComponentMask held, const FaceCover<Device>& cover = {}) const {
     lanes.memory.walls.fixed[1][0] = held;
     REQUIRE(pack_lanes(Exec(), block.particles, lanes) == -1);
-    return resultant(Exec(), lanes, field);
+    return resultant(Exec(), lanes, field, ~TractionMask(0), cover);
   }
 };
 
@@ -147,6 +148,18 @@ TEST_CASE("a face that ends at a support has its whole resultant, whatever is he
     CHECK_THAT(wide.force[0], WithinRel(x, 5e-3));
     CHECK_THAT(wide.force[1], WithinRel(y, 5e-3));
     check_same(dam.of_lanes(spline_lanes, held), wide);
+  }
+  // A caller who knows better: particles that cover half as much, or nothing, leave half of what the support
+  // takes up, or all of it, in the sum.
+  const Kokkos::View<float**, Device> half("vsb::cover", static_cast<size_t>(dam.block.particles.count()), 2);
+  const double whole = y + 9810 * 8 * 0.75;
+  for (const float share : {0.5f, 0.0f}) {
+    Kokkos::deep_copy(half, share);
+    for (int p = 0; p < dam.block.particles.count(); ++p)
+      if (dam.block.particles.position(p, 1) > 0.25) half(p, 1) = 0;
+    const auto less = dam.of_particles(basis, 3, half);
+    CHECK_THAT(less.force[1], WithinRel(share * y + (1 - share) * whole, 1e-12));
+    check_same(dam.of_lanes(lanes, 3, half), less);
   }
   // Where nothing is held, the foot is loaded too: by 78,480 Pa where chi is 1, over the half metre of the
   // cell that touches void cells, and by half of it where chi falls to 0, over the next.
