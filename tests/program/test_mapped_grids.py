@@ -125,8 +125,11 @@ grid = true
         angles = np.unique(np.degrees(np.arctan2(y + 2, x - 1)).round(6))
         np.testing.assert_allclose(angles, -45 + 7.5 * (np.arange(18) + 0.5), rtol=0, atol=1e-6)
         np.testing.assert_array_equal(np.unique(z), [0.5, 2])
-        # Sectors between r = 1 and 2.5 over 135 degrees, 3 m high.
-        self.assertAlmostEqual(fields["volume"].sum(), 0.5 * (2.5**2 - 1) * math.radians(135) * 3, delta=1e-12)
+        # Sectors between r = 1 and 2.5 over 135 degrees, 3 m high: their mass, and the volume of cells of 22.5 degrees
+        # with chords for arcs.
+        sectors, angle = 0.5 * (2.5**2 - 1) * math.radians(135) * 3, math.radians(22.5)
+        self.assertAlmostEqual(fields["mass"].sum(), 2 * sectors, delta=1e-11)
+        self.assertAlmostEqual(fields["volume"].sum(), sectors * math.sin(angle) / angle, delta=1e-12)
         with h5py.File(self.folder / "scene" / "scene_grid_000001.hdf") as file:
             points = file["VTKHDF/Points"][()]
         self.assertEqual(len(points), 5 * 7 * 3)
