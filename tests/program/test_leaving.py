@@ -107,6 +107,17 @@ class LeavesTheGrid(ProgramTest):
                 self.assertIn("diverged at step", done.stderr)
                 self.assertFalse((out / "summary.json").exists())
 
+    def test_large_strain_is_no_divergence(self):
+        """A block let go from a pressure of a fifth of its modulus, at the speed of its waves, 36.7 m/s: healthy. In steps of
+        1.6 times the critical one, with volumes that stay positive, it is not."""
+        healthy = ("body[0].stress=[-269230.0,-269230.0,-269230.0,0.0,0.0,0.0]", "body[0].velocity=[36.69,0.0]", "time.kappa=0.2")
+        unstable = ("body[0].velocity={ value = [0.0, 0.0], dx = [1.0, 0.5], dy = [0.3, -1.0] }", "time.kappa=1.6",
+                    "method.volume_update=exponential")
+        for more, code in ((healthy, 8), (unstable, 3)):
+            sets = [part for key in ("time.dt=", "grid.spacing=0.25", *more) for part in ("--set", key)]
+            done = vsb("run", self.write(BLOCK), "--out", self.folder / f"{code}", *sets)
+            self.assertEqual(done.returncode, code, done.stderr)
+
     def test_faster_than_its_waves_is_no_divergence(self):
         done = vsb("run", self.write(BLOCK), "--out", self.folder / "fast", "--set", "body[0].velocity=[200.0,0.0]")
         self.assertEqual(done.returncode, 8, done.stderr)
