@@ -63,19 +63,24 @@ class Locking(ProgramTest):
 
     def test_round_off_does_not_choose(self):
         """Along a straight surface functions of little volume have neighbours that are equal but for round-off."""
-        text = """dimension = 2
+        text = """
+            dimension = 2
             grid = {{ lower = [{0}, 0.0], upper = [{1}, 1.0], spacing = 0.1 }}
             faces = {{ x_min = "fixed", x_max = "roller", y_min = "roller" }}
-            body = [{{ particles_per_cell = 4, density = 1000.0, velocity = [1.0, 0.0],
-                       shape.box = {{ lower = [{0}, 0.0], upper = [{1}, 0.575] }},
-                       material = {{ youngs_modulus = 1e6, poisson_ratio = 0.49 }} }}]
-            method = {{ basis = "quadratic_bspline" }}
-            time = {{ kappa = 0.4, steps = 1 }}"""
+            method.basis = "quadratic_bspline"
+            time = {{ kappa = 0.4, steps = 1 }}
+            [[body]]
+            particles_per_cell = 4
+            density = 1000.0
+            velocity = [1.0, 0.0]
+            shape.box = {{ lower = [{0}, 0.0], upper = [{1}, 0.575] }}
+            material = {{ youngs_modulus = 1e6, poisson_ratio = 0.49 }}
+            """
         stress = []
         for lower in (0.0, -0.7):
             for engine in ("cell_lanes", "particles"):
                 out = self.folder / f"{engine}{lower}"
-                scene = self.write(text.format(lower, lower + 1).replace("\n            ", "\n"))
+                scene = self.write(text.format(lower, lower + 1))
                 done = vsb("run", scene, "--set", f"method.engine={engine}", "--out", out)
                 self.assertEqual(done.returncode, 0, done.stderr)
                 stress.append(last_fields(out)["cauchy_stress"])

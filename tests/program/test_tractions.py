@@ -221,5 +221,35 @@ class Surfaces(ProgramTest):
             self.assertIn(words, done.stderr)
 
 
+class Footing(ProgramTest):
+    """A pressure on a part of a straight edge: nodes are loaded as a whole."""
+    SOIL = """
+        dimension = 2
+        grid = { lower = [0.0, 0.0], upper = [4.0, 3.0], spacing = 0.25 }
+        faces = { x_min = "roller", x_max = "roller", y_min = "roller" }
+        time = { kappa = 0.5, steps = 1 }
+        [[body]]
+        particles_per_cell = 2
+        density = 1800.0
+        material = { youngs_modulus = 2e7, poisson_ratio = 0.3 }
+        shape.box = { lower = [0.0, 0.0], upper = [4.0, 2.0] }
+        [[traction]]
+        name = "footing"
+        pressure = 1e5
+        surface.box = { lower = [0.0, 1.5], upper = [%g, 2.5] }
+        """
+
+    def test_half_a_cell_more_is_told(self):
+        for width, told in ((1.0, True), (5.0, False)):
+            done = vsb("check", self.write(self.SOIL % width))
+            self.assertEqual(done.returncode, 0, done.stderr)
+            sentence = re.search(r"'footing' has the resultant \((.*)\) N at full load, but \((.*)\) N", done.stderr)
+            self.assertEqual(sentence is not None, told, done.stderr)
+            if told:
+                acting, exact = (float(sentence[n].split(",")[1]) for n in (1, 2))
+                self.assertAlmostEqual(acting, -1e5 * (width + 0.125))
+                self.assertAlmostEqual(exact, -1e5 * width)
+
+
 if __name__ == "__main__":
     unittest.main()
