@@ -27,8 +27,11 @@ double length(const Point& v) {
 
 std::string text(const Point& v, int dimension) {
   std::string list;
-  for (int i = 0; i < dimension; ++i)
-    list += fmt::format("{}{:.4g}", i == 0 ? "" : ", ", v[static_cast<size_t>(i)]);
+  const double round_off = 1e-12 * length(v);
+  for (int i = 0; i < dimension; ++i) {
+    const double x = v[static_cast<size_t>(i)];
+    list += fmt::format("{}{:.4g}", i == 0 ? "" : ", ", std::abs(x) < round_off ? 0 : x);
+  }
   return list;
 }
 

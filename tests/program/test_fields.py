@@ -342,7 +342,11 @@ class Warnings(FieldTest):
 
     def test_voids_that_the_filter_drops_have_no_walls(self):
         scene = SCENES / "cylinder-voids.toml"
-        self.assertEqual(self.warnings(scene), "")
+        text = self.warnings(scene)
+        self.assertNotIn("the wall at", text)
+        # Rings of one particle per cell fill some boundary cells by more than there is: the resultant is 5.9 % too large.
+        self.assertEqual(text.count("vsb: warning"), 1, text)
+        self.assertIn("'pressure in the hole' has the resultant", text)
         self.assertIn("the wall at", self.warnings(scene, "--set", "method.void_filter=false"))
 
 
