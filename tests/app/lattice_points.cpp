@@ -102,7 +102,7 @@ TEST_CASE("on a rectilinear or polar grid, too") {
   for (const auto& [region, count] :
        {std::pair(ball({}, 2.6), 72), std::pair(half_space({}, {1, 0, 0}), 48),
         std::pair(half_space({}, {0, 1, 0}), 24), std::pair(half_space({1e-3, 0, 0}, {-1, 0, 0}), 24),
-        std::pair(ball({-2.5, 0, 0}, 0.11), 2)}) {
+        std::pair(ball({-2.5, 0, 0}, 0.2), 2)}) {
     scene.bodies[0].region = region;
     CHECK(place_particles(scene).position.size() == static_cast<size_t>(count));
   }
