@@ -77,6 +77,7 @@ void run_everything(const Basis& basis, const UniformGrid<Dim, double>& grid, Sc
   allocate_material_state(block, 32, Dim * Dim);
   auto state = make_state(block.particles, basis);
   Kokkos::deep_copy(state.occupancy.tractions, 1u);
+  state.occupancy.conservative = 1;  // so that it acts where particles leave no boundary
   set_fill_criterion(state.occupancy, 0.1);
   set_void_filter(state.occupancy, basis);
   const std::vector<Body<double>> bodies{{0, 32, LinearElastic<double>::from_young(1, 0.3)},
