@@ -141,8 +141,9 @@ int run_command(int argc, char** argv) {
       study_options.run = [threads](const Scene& scene, const RunOptions& run_options) {
         auto with_particles = run_options;
         PlacedParticles placed;
-        const KokkosSession kokkos(
-            choose_threads(threads, [&] { return count_placed(scene, placed, with_particles.placed); }).threads);
+        const KokkosSession kokkos(choose_threads(threads, [&] {
+                                     return count_placed(scene, placed, with_particles.placed);
+                                   }).threads);
         return run_scene(scene, with_particles);
       };
       return run_study(cases, study_options);

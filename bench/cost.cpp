@@ -169,7 +169,8 @@ void print(const Row& row) {
 
 void print_flows(const Record& r, const char* real) {
   std::printf(
-      "\nfree flight at 0.1 cells per step, a grid of 30 times the body's volume, plasticity, and means of the "
+      "\nfree flight at 0.1 cells per step, a grid of 30 times the body's volume, plasticity, and means of "
+      "the "
       "divergence, %s\n",
       real);
   for (const auto& [name, value] : r.all()) std::printf("  %-30s %8.3f\n", name.c_str(), value);

@@ -174,8 +174,8 @@ template <class Exec, class Field, int Dim, class Real, class Device>
 TractionResultant<Dim> resultant(const Exec& exec, const SplineLaneState<Dim, Real, Device>& s,
                                  const Field& virtual_stress, TractionMask among = ~TractionMask(0),
                                  const FaceCover<Device>& cover = {}) {
-  return detail::lane_resultant<kernel::SplineLaneParticle<Dim, Real, Device>>(exec, s, s.memory.walls,
-                                                                               s.grid, virtual_stress, among, cover);
+  return detail::lane_resultant<kernel::SplineLaneParticle<Dim, Real, Device>>(
+      exec, s, s.memory.walls, s.grid, virtual_stress, among, cover);
 }
 
 }  // namespace vsb

@@ -27,10 +27,10 @@ struct LaneState {
   int gauss_points = 2;       ///< of these, per direction, 1 to 4
   long long repacked = 0;     ///< times
   int steps_since_repacked = 1000;
-  int steps_of_flow = 0;   ///< the last ones in a row in which many particles left their cells
-  bool unmarked = false;   ///< cells turned void or filled since the boundary was marked
-  bool prepared = false;   ///< whether the nodes have the sums of the step to come
-  bool loads_due = false;  ///< of the step to come, by add_lane_loads
+  int steps_of_flow = 0;     ///< the last ones in a row in which many particles left their cells
+  bool unmarked = false;     ///< cells turned void or filled since the boundary was marked
+  bool prepared = false;     ///< whether the nodes have the sums of the step to come
+  bool loads_due = false;    ///< of the step to come, by add_lane_loads
   bool loads_found = false;  ///< whether the load has been found to act at some node
 
   bool cubic() const {

@@ -115,7 +115,8 @@ inline void check_loaded(int loaded) {
   if (loaded > 0) return;
   detail::refuse(
       "tractions are declared, but no boundary node carries one: the method loads nodes between a cell with "
-      "particles and an empty one, so let the grid reach a cell beyond a loaded face, and declare at its nodes "
+      "particles and an empty one, so let the grid reach a cell beyond a loaded face, and declare at its "
+      "nodes "
       "(count_loaded_nodes and Occupancy::boundary_node_count tell how many are loaded); pass "
       "NoVirtualStress{} as long as there is nothing to load");
 }

@@ -142,7 +142,8 @@ struct MoveSplineGroup : MoveGroup<false, Material, Volume, Dim, Real, Device> {
           L(i, j) = gradient[j] * P(grid.inverse_spacing[j] * grid.spacing[0]);
         });
       });
-      if constexpr (averaged) L = with_mean_divergence(L, value_at<Dim>(mean, centres.place(xi.first)), P(beta));
+      if constexpr (averaged)
+        L = with_mean_divergence(L, value_at<Dim>(mean, centres.place(xi.first)), P(beta));
       this->advance(entry, L);
       const P V = lanes.load(lanes.volume_column, entry);
       lanes.store(lanes.volume_column, entry, volume(V, L, P(1)));

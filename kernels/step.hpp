@@ -22,7 +22,7 @@ struct State {
   ForceWorkspace<Real, Device> sums_workspace;
   ScatterWorkspace<Real, Device> remap_workspace;
   MeanDivergence<Real, Device> mean_divergence;  ///< empty unless steps average
-  bool weighed = false;  ///< whether the particles have been found to have masses and volumes
+  bool weighed = false;      ///< whether the particles have been found to have masses and volumes
   bool loads_found = false;  ///< whether the load has been found to act at some node
 };
 

@@ -5,10 +5,10 @@
 ///
 /// The cell that contains a point is found by bisection along each axis where the grid is rectilinear, and
 /// else by a walk: a uniform raster over the grid's bounding box names a cell nearby; as long as the point
-/// lies beyond a face of the cell, the walk goes on in that direction, in strides that double until one is too
-/// long, and are halved from then on. Either looks at a number of cells that grows as the logarithm of those
-/// along an axis, however graded the grid. The answer depends on nothing but the point, so that all kernels
-/// of a step agree about it.
+/// lies beyond a face of the cell, the walk goes on in that direction, in strides that double until one is
+/// too long, and are halved from then on. Either looks at a number of cells that grows as the logarithm of
+/// those along an axis, however graded the grid. The answer depends on nothing but the point, so that all
+/// kernels of a step agree about it.
 #pragma once
 
 #include <vsb/physics/multilinear.hpp>

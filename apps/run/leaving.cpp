@@ -10,12 +10,12 @@ namespace vsb::app {
 
 namespace {
 
-/// Of the wave speed, and of the modulus; see looks_unstable. The smaller of both shares, its largest value among
-/// the particles when the first one left, was in an elastic block in 2D, linear functions:
-///   let go from a pressure of 0.05, 0.1, 0.2, 0.3 and 0.5 of the modulus, drifting at 0.02 to 1 wave speeds: up to
-///   0.07, 0.14, 0.32, 0.49 and 0.45;
-///   in steps of 1.4, 1.5, 1.6, 1.8 and 2 times the critical one (exponential volume update, in which no volume turns
-///   negative first): 0.58, 1.1, 5.6, 6.9 and 80; in column-large-strain, which throws particles out: 2.8.
+/// Of the wave speed, and of the modulus; see looks_unstable. The smaller of both shares, its largest value
+/// among the particles when the first one left, was in an elastic block in 2D, linear functions:
+///   let go from a pressure of 0.05, 0.1, 0.2, 0.3 and 0.5 of the modulus, drifting at 0.02 to 1 wave speeds:
+///   up to 0.07, 0.14, 0.32, 0.49 and 0.45; in steps of 1.4, 1.5, 1.6, 1.8 and 2 times the critical one
+///   (exponential volume update, in which no volume turns negative first): 0.58, 1.1, 5.6, 6.9 and 80; in
+///   column-large-strain, which throws particles out: 2.8.
 constexpr double unstable_share = 0.5;
 
 /// How far q lies beyond the faces across an axis, m or rad; negative inside.

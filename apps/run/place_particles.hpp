@@ -63,7 +63,7 @@ struct PlacedParticles {
   std::vector<double> volume;
   std::vector<PlacedBody> bodies;
   std::vector<PlacedCover> covers;  ///< where it is not that of the box around the particle
-  std::vector<CutStarts> starts;  ///< [body]; of those with cut lattices
+  std::vector<CutStarts> starts;    ///< [body]; of those with cut lattices
   CutVolume cut;
   MomentFit moment_fit;
 };

@@ -28,8 +28,8 @@ struct RunOptions {
   bool quiet = false;
   bool progress_only = false;  ///< print neither head nor report: the caller does
   Solution solution = Solution::steps;
-  std::string threads;  ///< how many, and why, for the screen
-  bool resume = false;  ///< continue from the directory's checkpoint, if there is one
+  std::string threads;                ///< how many, and why, for the screen
+  bool resume = false;                ///< continue from the directory's checkpoint, if there is one
   PlacedParticles* placed = nullptr;  ///< where they have been placed already; the run takes them
 };
 
@@ -43,7 +43,8 @@ struct RunResult {
 /// LeftGrid after the last state and the summary are written.
 RunResult run_scene(const Scene& scene, const RunOptions& options);
 
-/// Prints the resolved scene and what a run of it would cost; writes no file. `placed`: as of RunOptions. Throws SetupError.
+/// Prints the resolved scene and what a run of it would cost; writes no file. `placed`: as of RunOptions.
+/// Throws SetupError.
 void check_scene(const Scene& scene, PlacedParticles* placed);
 
 }  // namespace vsb::app

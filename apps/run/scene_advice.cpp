@@ -128,10 +128,10 @@ std::vector<std::string> scene_advice(const Scene& scene) {
   if (const auto hint = units_hint(scene); !hint.empty()) advice.push_back(hint);
   if (scene.single_precision)
     if (const double moved = displacement_in_cells(scene); moved > 0 && moved < least_float_displacement)
-      advice.push_back(
-          fmt::format("the loads displace the bodies by some {:.1g} of a cell, of which precision = \"float\" "
-                      "loses a good part: stresses are right, displacements are not; take \"double\"",
-                      moved));
+      advice.push_back(fmt::format(
+          "the loads displace the bodies by some {:.1g} of a cell, of which precision = \"float\" "
+          "loses a good part: stresses are right, displacements are not; take \"double\"",
+          moved));
   for (const auto& traction : scene.tractions)
     if (const double strain = strain_by(scene, traction);
         traction.has_surface && !traction.carried && acts_on_nodes(traction) && strain > large_strain)

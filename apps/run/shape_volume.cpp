@@ -14,8 +14,8 @@ namespace vsb::app {
 namespace {
 
 constexpr double shortest_interval = 1e-6;  ///< of a line, in shares of the box that it crosses
-constexpr double unresolved = 1e-9;  ///< of the volume: boxes smaller than this together are not halved
-constexpr double agreement = 1.5e-4;   ///< of the volume: between estimates with fewer and with more boxes
+constexpr double unresolved = 1e-9;   ///< of the volume: boxes smaller than this together are not halved
+constexpr double agreement = 1.5e-4;  ///< of the volume: between estimates with fewer and with more boxes
 constexpr size_t boxes_in_plane = 512, boxes_in_space = 1024, fewest_boxes = 128;
 constexpr size_t most_boxes = 8;       ///< times as many, at last
 constexpr double shortest_way = 1e-4;  ///< to an end, in shares of the box

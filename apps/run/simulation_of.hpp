@@ -131,8 +131,8 @@ class SimulationOf final : public Simulation {
                  o.bins.occupied, o.cells.occupied, o.cells.exterior, o.cells.boundary, o.cells.underfilled,
                  o.cells.outside, o.cells.carried.particle, o.cells.carried.cells, o.cells.carried.nodes,
                  o.boundary, state.sums_workspace.particles.bin_sums, state.remap_workspace.bin_sums,
-                 state.mean_divergence.of_particle, state.mean_divergence.of_function, state.mean_divergence.sums,
-                 state.mean_divergence.workspace.bin_sums);
+                 state.mean_divergence.of_particle, state.mean_divergence.of_function,
+                 state.mean_divergence.sums, state.mean_divergence.workspace.bin_sums);
   }
 
   void advance(long long steps) override {
@@ -230,7 +230,8 @@ class SimulationOf final : public Simulation {
         cells = lanes_->loaded_cells(mask);
       } else {
         const auto& s = memory_->state;
-        r = with_field([&](const auto& field) { return vsb::resultant(exec_, s, basis_, field, mask, cover_); });
+        r = with_field(
+            [&](const auto& field) { return vsb::resultant(exec_, s, basis_, field, mask, cover_); });
         cells = count_loaded_cells(exec_, s.occupancy, basis_, mask);
       }
       for (int i = 0; i < Dim; ++i) state.force[static_cast<size_t>(i)] = r.force[i];

@@ -374,10 +374,11 @@ TEST_CASE("a strongly graded grid: every cell's centre is found in it") {
 TEST_CASE("thousands of graded nodes along an axis: few cells are looked at for a point") {
   // Cell sizes over seven decades. Walks end after some dozens of cells, or are not found.
   for (const double shear : {0.0, 0.3}) {
-    const auto mesh = make_mapped_mesh<double, Host>(Vector<2, int>{{1600, 4}}, [&](const Vector<2, int>& ij) {
-      const double x = std::pow(1.01, ij[0] - 1600);
-      return Vector<2, double>{{x, 1. * ij[1] + shear * x}};
-    });
+    const auto mesh =
+        make_mapped_mesh<double, Host>(Vector<2, int>{{1600, 4}}, [&](const Vector<2, int>& ij) {
+          const double x = std::pow(1.01, ij[0] - 1600);
+          return Vector<2, double>{{x, 1. * ij[1] + shear * x}};
+        });
     CHECK(mesh.grid.rectilinear == (shear == 0));
     for_each_cell(mesh.grid, [&](const Vector<2, int>& cell) {
       const auto x = forward(mesh.grid, cell, {{0.25, 0.75}});
