@@ -105,3 +105,17 @@ TEMPLATE_TEST_CASE("damping on packs follows the sign of every lane's velocity",
     }
   }
 }
+
+TEMPLATE_TEST_CASE("a node has mass where its inverse is a number", "", float, double) {
+  using Real = TestType;
+  using Limits = std::numeric_limits<Real>;
+  const Real least = Limits::min();
+  const Real masses[] = {0, Limits::denorm_min(), least / 8, std::nextafter(least, Real(0)), least, 1};
+  for (const Real m : masses) {
+    CAPTURE(m);
+    CHECK(has_mass(m) == (m >= least));
+    CHECK(any(has_mass(Pack<Real, 4>(m))) == (m >= least));
+    if (has_mass(m)) CHECK(std::isfinite(1 / m));
+  }
+  CHECK(std::isinf(1 / Limits::denorm_min()));  // what it is for
+}
