@@ -69,21 +69,30 @@ void check_tractions(const Scene& scene, const Basis& basis, const Occupancy<Dev
   }
 }
 
+/// What no support takes up of the loads, in words; empty where nothing is found.
+template <int Dim>
+std::string text(const Scene& scene, const UnsupportedLoad<Dim>& load) {
+  if (!load.found) return {};
+  const auto list = [](const auto& vector) {
+    std::string numbers;
+    for (int i = 0; i < vector.size; ++i) numbers += fmt::format("{}{:.4g}", i == 0 ? "" : ", ", vector[i]);
+    return numbers;
+  };
+  return fmt::format(
+      "no support takes up a force of ({}) N{} on the body around {}, {:.2g} of its nodal forces",
+      list(load.force), Dim > 1 ? fmt::format(" and a torque of ({}) N m", list(load.torque)) : "",
+      place_text(scene, to_scene(load.middle, local_origin(scene)), 4), load.share);
+}
+
 /// Throws SetupError for a load of a static solution that nothing takes up.
 template <int Dim>
 void refuse_unsupported(const Scene& scene, const UnsupportedLoad<Dim>& load) {
-  if (!load.found) return;
-  const auto list = [](const auto& vector) {
-    std::string text;
-    for (int i = 0; i < vector.size; ++i) text += fmt::format("{}{:.4g}", i == 0 ? "" : ", ", vector[i]);
-    return text;
-  };
-  throw SetupError(fmt::format(
-      "--static: no support takes up a force of ({}) N{} on the body around {}, {:.2g} of its nodal "
-      "forces, so there is no static state: hold the body at a face of the grid ('faces'), or balance its "
-      "loads",
-      list(load.force), Dim > 1 ? fmt::format(" and a torque of ({}) N m", list(load.torque)) : "",
-      place_text(scene, to_scene(load.middle, local_origin(scene)), 4), load.share));
+  if (load.found)
+    throw SetupError(
+        fmt::format("--static: {}, so there is no static state: hold the body at a face of the grid "
+                    "('faces'), or balance "
+                    "its loads",
+                    text(scene, load)));
 }
 
 }  // namespace vsb::app

@@ -26,6 +26,18 @@ std::unique_ptr<ParticleReader> read_particles(const Scene& scene, Simulation& s
   return particles;
 }
 
+/// A run until a static state whose loads nothing takes up at the start.
+std::vector<std::string> support_advice(const Scene& scene, Simulation& simulation) {
+  const double settled = loads_settled_at(scene);
+  if (!scene.time.until_static || !std::isfinite(settled)) return {};
+  const auto unsupported = simulation.unsupported_load(settled);
+  if (unsupported.empty()) return {};
+  return {fmt::format(
+      "at the start, and at full load, {}: the body moves until something stops it, and what is then called "
+      "static is not the state at its place; hold it at a face of the grid ('faces'), or balance its loads",
+      unsupported)};
+}
+
 }  // namespace
 
 double loads_settled_at(const Scene& scene) {
@@ -51,7 +63,9 @@ void print_advice(const Scene& scene, Simulation& simulation) {
   print_warnings(scene_advice(scene));
   print_warnings(volume_advice(scene, simulation.body_volumes()));
   print_warnings(simulation.advice());
-  if (simulation.step() == 0) print_warnings(resultant_advice(scene, simulation));  // not resumed
+  if (simulation.step() != 0) return;  // resumed
+  print_warnings(resultant_advice(scene, simulation));
+  print_warnings(support_advice(scene, simulation));
 }
 
 void write_frames(Results& results, const Scene& scene, Simulation& simulation) {

@@ -141,6 +141,9 @@ class Simulation {
   /// time t, s, where it is found. go_on(iteration, residual) may end the search. Throws SetupError where a
   /// load has no support.
   virtual StaticSolution solve_static(double t, const std::function<bool(int, double)>& go_on) = 0;
+  /// What no support takes up of the particles' stress, weight and the loads of time t, s, in words; empty
+  /// where the supports take up all but a thousandth of the nodal forces.
+  virtual std::string unsupported_load(double t) = 0;
   /// Throws Diverged when a field of a particle is not finite or a volume is not positive.
   virtual void check_health() = 0;
   /// The balance of the present state under the loads of the present or of a given time, s.

@@ -174,6 +174,20 @@ class SimulationOf final : public Simulation {
     return solution;
   }
 
+  std::string unsupported_load(double t) override {
+    set_loads(t);
+    const Loan loan(*this);
+    locate();
+    auto& state = memory_->state;
+    const int lost = with_field([&](const auto& field) {
+      return assemble_forces(exec_, state.particles, state.occupancy, state.surface, state.nodes,
+                             state.sums_workspace, basis_, field, options_.gravity, options_.scatter);
+    });
+    if (lost >= 0) take_leave(particle_count() + lost);
+    constexpr double tolerance = 1e-3;  // what meshes and lattices leave of loads that are in balance
+    return text(scene_, find_unsupported_load(exec_, state.nodes, state.occupancy.bins, basis_, tolerance));
+  }
+
   void check_health() override {
     throw_spoilt(lanes_ ? lanes_->find_invalid() : find_invalid(exec_, memory_->state.particles));
   }

@@ -204,6 +204,19 @@ class Refusals(StaticTest):
         # The paper's load on the free ring leaves a resultant.
         self.assertIn("no support", self.refuse(2, SCENES / "cylinder-free.toml"))
 
+    def test_an_explicit_run_of_a_body_that_nothing_holds_is_warned_of(self):
+        free = self.write(FREE)
+        until_static = ("--set", "time={kappa=0.5,until_static={max_steps=20}}", "--set", "method.damping=0.5")
+        weight = ("--set", "gravity=[0.0,-9.81]")
+        warning = r"warning: at the start, and at full load, no support takes up a force of \([^)]*, -1\.\d+e\+05\) N"
+        for command in ("check", "run"):
+            out = ("--out", self.folder / "free") if command == "run" else ()
+            self.assertRegex(vsb(command, free, *until_static, *weight, *out).stderr, warning)
+        self.assertNotIn("no support", vsb("check", free, *until_static).stderr)  # in balance
+        self.assertNotIn("no support", vsb("check", free, *weight).stderr)  # it is to move
+        block = self.write(BLOCK)
+        self.assertNotIn("no support", vsb("check", block, *until_static).stderr)
+
     def test_scenes_that_move(self):
         block = self.write(BLOCK)
         self.assertIn("traction 'traction 1' is a sine", self.refuse(2, block, "--set", "traction[0].time={sine={period=1.0}}"))
