@@ -7,15 +7,15 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "files/build_info.hpp"
+#include "engine/build_info.hpp"
+#include "engine/kokkos_session.hpp"
+#include "engine/simulation.hpp"
 #include "files/hdf5_file.hpp"
-#include "run/kokkos_session.hpp"
-#include "run/place_particles.hpp"
 #include "run/run_scene.hpp"
-#include "run/simulation.hpp"
 #include "run/standard_streams.hpp"
 #include "scene/open_setting.hpp"
 #include "scene/scene_error.hpp"
+#include "setup/place_particles.hpp"
 #include "study/read_study.hpp"
 #include "study/run_study.hpp"
 
@@ -59,7 +59,7 @@ int run_command(int argc, char** argv) {
       "A scene is a TOML file; the ones to start from lie in apps/scenes. A typical session:\n"
       "  vsb check apps/scenes/column.toml                        what would run, and what it would cost\n"
       "  vsb run apps/scenes/column.toml --set time.steps=30000   run it, with another number of steps\n"
-      "  /usr/bin/python3 apps/plot.py results/column             draw its pictures\n\n"
+      "  /usr/bin/python3 apps/plot/plot.py results/column             draw its pictures\n\n"
       "Exit codes: 0 done, 2 bad usage or input, 3 diverged, 4 files cannot be read or written,\n"
       "5 interrupted, checkpoint written, 6 a study ran but missed an expectation, 7 not static after "
       "max_steps\n"

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vsb/kernels/health.hpp>
+#include <vsb/kernels/readout/health.hpp>
 
 namespace vsb::bench {
 

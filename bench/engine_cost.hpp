@@ -11,7 +11,7 @@
 #include "surface_scene.hpp"
 
 #include <cmath>
-#include <vsb/kernels/lane_loads.hpp>
+#include <vsb/kernels/lanes/loads.hpp>
 #include <vsb/physics/traction_fields.hpp>
 
 namespace vsb::bench {

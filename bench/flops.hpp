@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// The additions and multiplications of a step on cell lanes, counted by running the formulas of physics/ in
-/// the order of kernels/lane_sweeps.hpp and lane_sums.hpp on a number type that counts. Adding a constant
+/// the order of kernels/lanes/sweeps.hpp and sums.hpp on a number type that counts. Adding a constant
 /// zero and multiplying by a constant one are not counted; nor is the work at the nodes.
 #pragma once
 

@@ -14,7 +14,7 @@
 #include <string>
 #include <type_traits>
 #include <vector>
-#include <vsb/kernels/build_lanes.hpp>
+#include <vsb/kernels/lanes/build.hpp>
 #include <vsb/kernels/step.hpp>
 #include <vsb/physics/linear_basis.hpp>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The scene with quadratic B-splines: on cell lanes (kernels/spline_lane_step.hpp), and for the particle
+/// The scene with quadratic B-splines: on cell lanes (kernels/lane_step.hpp), and for the particle
 /// kernels.
 #pragma once
 
 #include "scene.hpp"
 
-#include <vsb/kernels/spline_lane_step.hpp>
+#include <vsb/kernels/lane_step.hpp>
 #include <vsb/physics/quadratic_bspline_basis.hpp>
 
 namespace vsb::bench {

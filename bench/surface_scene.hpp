@@ -6,7 +6,7 @@
 
 #include "scene.hpp"
 
-#include <vsb/kernels/assemble_forces.hpp>
+#include <vsb/kernels/particles/assemble_forces.hpp>
 
 namespace vsb::bench {
 

@@ -4,11 +4,11 @@
 #pragma once
 
 #include <vector>
-#include <vsb/kernels/assemble_forces.hpp>
-#include <vsb/kernels/grid_to_particles.hpp>
-#include <vsb/kernels/remap_velocity.hpp>
-#include <vsb/kernels/update_nodes.hpp>
-#include <vsb/kernels/update_stress.hpp>
+#include <vsb/kernels/particles/assemble_forces.hpp>
+#include <vsb/kernels/particles/grid_to_particles.hpp>
+#include <vsb/kernels/particles/remap_velocity.hpp>
+#include <vsb/kernels/particles/update_nodes.hpp>
+#include <vsb/kernels/particles/update_stress.hpp>
 
 namespace vsb {
 

@@ -16,7 +16,8 @@
 
 namespace vsb {
 
-/// A value that kernels copy; the memory it points to belongs to a MappedMesh (kernels/make_mapped_mesh.hpp).
+/// A value that kernels copy; the memory it points to belongs to a MappedMesh
+/// (kernels/mesh/make_mapped_mesh.hpp).
 template <int Dim, class Real>
 struct MappedGrid : CellNumbering<Dim> {
   using CellNumbering<Dim>::cells;

@@ -6,7 +6,7 @@
 ///
 /// Points lie at least one cell away from the faces of `grid`: its outermost layer of cells are ghost cells,
 /// which with_ghost_layer adds to the grid of a scene. At a wall the nodes of this layer are mirror images
-/// (see kernels/mirror_nodes.hpp), so that fixed planes and planes of symmetry are exact.
+/// (see kernels/particles/mirror_nodes.hpp), so that fixed planes and planes of symmetry are exact.
 #pragma once
 
 #include <vsb/physics/shape.hpp>

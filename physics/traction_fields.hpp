@@ -89,7 +89,8 @@ struct TractionFields : ActsOnParticles {
   Real factor[capacity];  ///< on the field of traction k, at this time
   int count = 0;
   TractionMask balanced = 0;  ///< the tractions to which `balance` belongs, all at the same nodes
-  RigidBodyForce<Dim, Real> balance = RigidBodyForce<Dim, Real>::zero();  ///< see kernels/self_balance.hpp
+  RigidBodyForce<Dim, Real> balance =
+      RigidBodyForce<Dim, Real>::zero();  ///< see kernels/boundary/self_balance.hpp
 
   TractionMask known() const { return first_tractions(count, capacity); }
   TractionFields without(TractionMask tractions) const {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 #include <vector>
-#include <vsb/kernels/make_mapped_mesh.hpp>
+#include <vsb/kernels/mesh/make_mapped_mesh.hpp>
 #include <vsb/physics/linear_basis.hpp>
 #include <vsb/physics/mapped_basis.hpp>
 #include <vsb/views/particles.hpp>

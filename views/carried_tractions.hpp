@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// Tractions whose surface moves with the material: particles carry them, and they are declared at the nodes
-/// of the cells that hold such particles (see kernels/mark_boundary_nodes.hpp).
+/// of the cells that hold such particles (see kernels/boundary/mark_boundary_nodes.hpp).
 #pragma once
 
 #include <vsb/views/kokkos_compat.hpp>

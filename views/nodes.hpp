@@ -32,7 +32,8 @@ struct Nodes {
   KOKKOS_FUNCTION Real& force(int node, int i) const { return sums(node, 1 + Dim + i); }
 };
 
-/// [node]: the tractions that act at a node; zero for nodes outside N1 (see kernels/mark_boundary_nodes.hpp).
+/// [node]: the tractions that act at a node; zero for nodes outside N1 (see
+/// kernels/boundary/mark_boundary_nodes.hpp).
 template <class Device>
 using BoundaryNodes = Kokkos::View<TractionMask*, Device>;
 

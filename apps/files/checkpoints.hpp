@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "run/simulation.hpp"
+#include "engine/simulation.hpp"
 
 namespace vsb::app {
 

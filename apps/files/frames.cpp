@@ -5,8 +5,8 @@
 #include <array>
 
 #include <vsb/physics/plastic_strain.hpp>
-#include "files/build_info.hpp"
-#include "run/comparison.hpp"
+#include "engine/build_info.hpp"
+#include "report/comparison.hpp"
 
 namespace vsb::app {
 

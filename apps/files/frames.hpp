@@ -5,8 +5,8 @@
 
 #include <string>
 
+#include "engine/simulation.hpp"
 #include "files/hdf5_file.hpp"
-#include "run/simulation.hpp"
 
 namespace vsb::app {
 

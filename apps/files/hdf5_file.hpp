@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "run/byte_stream.hpp"
+#include "engine/byte_stream.hpp"
 
 namespace vsb::app {
 

@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
+#include "engine/simulation.hpp"
 #include "files/checkpoints.hpp"
 #include "files/directory_lock.hpp"
-#include "run/simulation.hpp"
 
 namespace vsb::app {
 

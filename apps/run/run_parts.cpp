@@ -7,10 +7,10 @@
 #include <cmath>
 #include <cstdio>
 
-#include "run/comparison.hpp"
-#include "run/recovered_stress.hpp"
-#include "run/scene_advice.hpp"
-#include "run/traction_watch.hpp"
+#include "report/comparison.hpp"
+#include "report/recovered_stress.hpp"
+#include "report/scene_advice.hpp"
+#include "report/traction_watch.hpp"
 
 namespace vsb::app {
 

@@ -3,9 +3,9 @@
 /// What explicit runs and static solutions have in common.
 #pragma once
 
+#include "engine/simulation.hpp"
 #include "files/results.hpp"
-#include "run/simulation.hpp"
-#include "run/summary.hpp"
+#include "report/summary.hpp"
 
 namespace vsb::app {
 

@@ -10,18 +10,18 @@
 #include <limits>
 #include <optional>
 
+#include "engine/kokkos_session.hpp"
+#include "engine/waiting_threads.hpp"
+#include "report/progress.hpp"
+#include "report/scene_advice.hpp"
+#include "report/traction_watch.hpp"
 #include "run/force_decay.hpp"
 #include "run/interrupt.hpp"
-#include "run/kokkos_session.hpp"
-#include "run/progress.hpp"
 #include "run/rest_forecast.hpp"
 #include "run/run_balance.hpp"
 #include "run/run_parts.hpp"
 #include "run/run_static.hpp"
-#include "run/scene_advice.hpp"
 #include "run/stages.hpp"
-#include "run/traction_watch.hpp"
-#include "run/waiting_threads.hpp"
 
 namespace vsb::app {
 

@@ -5,8 +5,8 @@
 
 #include <string>
 
-#include "run/solution.hpp"
-#include "run/summary.hpp"
+#include "report/solution.hpp"
+#include "report/summary.hpp"
 #include "scene/scene.hpp"
 
 namespace vsb::app {

@@ -7,8 +7,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "report/progress.hpp"
 #include "run/interrupt.hpp"
-#include "run/progress.hpp"
 #include "run/run_parts.hpp"
 
 namespace vsb::app {

@@ -4,8 +4,8 @@
 /// threshold; 3. they are removed; and again, until nothing fails or the body collapses.
 #pragma once
 
-#include "run/simulation.hpp"
-#include "run/stage_report.hpp"
+#include "engine/simulation.hpp"
+#include "report/stage_report.hpp"
 
 namespace vsb::app {
 

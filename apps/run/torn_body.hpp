@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "run/simulation.hpp"
+#include "engine/simulation.hpp"
 
 namespace vsb::app {
 

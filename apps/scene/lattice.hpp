@@ -46,7 +46,7 @@ struct Jitter {
   std::uint64_t seed = 1;
 };
 
-/// What becomes of the lattice boxes that the boundary of the body cuts (see run/cut_lattice.hpp).
+/// What becomes of the lattice boxes that the boundary of the body cuts (see setup/cut_lattice.hpp).
 enum class BoundaryBoxes {
   keep,   ///< whole if their centre lies in the body, else nothing
   cut,    ///< one particle at the centroid of what lies in the body, of its volume

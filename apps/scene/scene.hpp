@@ -64,7 +64,7 @@ struct TractionSpec {
   Imposition imposition = Imposition::virtual_stress;
   StressFieldSpec field;       ///< sbar at full load
   bool all_nodes = false;      ///< acts at all active nodes, not at the boundary nodes alone
-  bool self_balanced = false;  ///< its resultant is zero, see kernels/self_balance.hpp
+  bool self_balanced = false;  ///< its resultant is zero, see kernels/boundary/self_balance.hpp
   Region surface;
   bool has_surface = false;  ///< whether the scene says which; everywhere otherwise
   bool carried = false;      ///< on nodes: the surface is that of the undeformed body and moves with it
@@ -99,11 +99,11 @@ struct MethodSpec {
   std::array<double, 3> gimp_half_width{};  ///< of a particle, per direction, in cells; of uGIMP
   double damping = 0;
   std::string volume_update, scatter;
-  std::string engine;         ///< auto, cell_lanes or particles, see run/lane_engine.hpp
+  std::string engine;         ///< auto, cell_lanes or particles, see engine/lane_engine.hpp
   int cell_gauss_points = 1;  ///< of the original virtual stress boundary method, per direction
-  double fill_criterion = 0;  ///< tau, see kernels/mark_underfilled_cells.hpp; 0: off
-  bool void_filter = false;   ///< see kernels/filter_voids.hpp
-  bool moment_fit = false;    ///< see run/moment_fit.hpp
+  double fill_criterion = 0;  ///< tau, see kernels/boundary/mark_underfilled_cells.hpp; 0: off
+  bool void_filter = false;   ///< see kernels/boundary/filter_voids.hpp
+  bool moment_fit = false;    ///< see setup/moment_fit.hpp
   bool averaged = false;      ///< particles strain by a mean divergence, see physics/mean_divergence.hpp
   bool allow_particles_on_grid_lines = false;
 };
@@ -140,8 +140,8 @@ using Comparison = std::variant<std::monostate, ColumnComparison, CylinderCompar
 
 /// Error norms of the stress beside those of the particles' own.
 struct MoreNorms {
-  bool recovered = false;   ///< of the recovered stress (run/recovered_stress.hpp): e_rr_recovered
-  bool cell_means = false;  ///< of the means over cells (run/cell_means.hpp): e_rr_cell_mean
+  bool recovered = false;   ///< of the recovered stress (report/recovered_stress.hpp): e_rr_recovered
+  bool cell_means = false;  ///< of the means over cells (report/cell_means.hpp): e_rr_cell_mean
 };
 
 /// Figures to print beside ours: error name -> what the source says.

@@ -6,7 +6,7 @@
 #include <array>
 #include <filesystem>
 
-#include "files/build_info.hpp"
+#include "engine/build_info.hpp"
 #include "files/hdf5_file.hpp"
 #include "scene/toml_reader.hpp"
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "run/solution.hpp"
+#include "report/solution.hpp"
 #include "scene/scene.hpp"
 
 namespace vsb::app {

@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "files/build_info.hpp"
+#include "engine/build_info.hpp"
 
 extern char** environ;
 
@@ -42,7 +42,7 @@ int spawn(std::vector<std::string> arguments, bool silent) {
 }  // namespace
 
 std::string draw_study(const std::string& csv_file, bool quiet) {
-  const std::string script = apps_directory() + "/plot_study.py";
+  const std::string script = apps_directory() + "/plot/plot_study.py";
   if (!std::filesystem::exists(script)) return fmt::format("there is no {}", script);
   for (const char* python : {"python3", "/usr/bin/python3"}) {
     if (spawn({python, "-c", "import matplotlib"}, true) != 0) continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Has a study's pictures drawn by apps/plot_study.py.
+/// Has a study's pictures drawn by apps/plot/plot_study.py.
 #pragma once
 
 #include <string>

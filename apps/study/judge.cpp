@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "run/summary.hpp"
+#include "report/summary.hpp"
 #include "study/convergence.hpp"
 
 namespace vsb::app {

@@ -11,8 +11,8 @@
 #include <filesystem>
 #include <set>
 
-#include "files/build_info.hpp"
-#include "run/summary.hpp"
+#include "engine/build_info.hpp"
+#include "report/summary.hpp"
 #include "scene/toml_reader.hpp"
 #include "study/random_body.hpp"
 

@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "files/directory_lock.hpp"
+#include "report/progress.hpp"
 #include "run/interrupt.hpp"
-#include "run/progress.hpp"
 #include "scene/toml_reader.hpp"
 #include "study/case_record.hpp"
 #include "study/draw_study.hpp"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "run/summary.hpp"
+#include "report/summary.hpp"
 
 namespace vsb::app {
 

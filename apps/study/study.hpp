@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "run/solution.hpp"
+#include "report/solution.hpp"
 #include "scene/scene.hpp"
 
 namespace vsb::app {
@@ -95,7 +95,7 @@ struct Study {
   std::optional<Reach> reach;
 
   /// What its charts show: as the study says; else the errors of its scenes; else what scenes without an
-  /// exact solution are judged by (run/summary.hpp). Cases that are expected to fail have none.
+  /// exact solution are judged by (report/summary.hpp). Cases that are expected to fail have none.
   std::vector<std::string> figures() const;
   bool has_figures() const { return !figures().empty(); }
 };

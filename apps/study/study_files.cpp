@@ -8,7 +8,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "files/build_info.hpp"
+#include "engine/build_info.hpp"
 #include "files/hdf5_file.hpp"
 #include "scene/toml_reader.hpp"
 

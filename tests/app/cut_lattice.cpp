@@ -5,9 +5,9 @@
 #include <set>
 
 #include "app/shapes.hpp"
-#include "run/box_share.hpp"
-#include "run/place_particles.hpp"
-#include "run/simulation.hpp"
+#include "engine/simulation.hpp"
+#include "setup/box_share.hpp"
+#include "setup/place_particles.hpp"
 
 using namespace vsb::app;
 using vsb::test::add_body;

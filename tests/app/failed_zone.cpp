@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// How far failure reaches, on lattices small enough to count by hand.
-#include "run/failed_zone.hpp"
+#include "report/failed_zone.hpp"
 
 #include <cmath>
 

@@ -2,13 +2,13 @@
 /// \file
 /// Which lattice points are looked at, and how often a body's shape is asked: what follows the grid, or the
 /// number of frames, would be seen here as a count.
-#include "run/lattice_points.hpp"
+#include "setup/lattice_points.hpp"
 
 #include "app/shapes.hpp"
-#include "run/body_surface.hpp"
-#include "run/place_particles.hpp"
-#include "run/simulation.hpp"
+#include "engine/simulation.hpp"
 #include "scene/units.hpp"
+#include "setup/body_surface.hpp"
+#include "setup/place_particles.hpp"
 
 using namespace vsb::app;
 using vsb::test::add_body;

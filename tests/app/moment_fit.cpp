@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "app/shapes.hpp"
-#include "run/moment_fit.hpp"
-#include "run/place_particles.hpp"
+#include "setup/moment_fit.hpp"
+#include "setup/place_particles.hpp"
 
 using namespace vsb::app;
 using vsb::test::add_body;

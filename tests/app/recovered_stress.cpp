@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// The recovered stress, means over cells, and their error norms.
-#include "run/recovered_stress.hpp"
+#include "report/recovered_stress.hpp"
 
 #include "app/shapes.hpp"
-#include "run/cell_means.hpp"
-#include "run/comparison.hpp"
-#include "run/simulation.hpp"
+#include "engine/simulation.hpp"
+#include "report/cell_means.hpp"
+#include "report/comparison.hpp"
 
 using namespace vsb::app;
 using vsb::test::grid_scene;

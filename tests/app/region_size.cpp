@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// Bounds and least volume of a region against those of shapes of which both are known.
-#include "run/region_size.hpp"
+#include "setup/region_size.hpp"
 
 #include <algorithm>
 #include <cmath>

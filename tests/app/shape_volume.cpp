@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// Volumes of regions, and of what a grid leaves of them, against closed forms.
-#include "run/shape_volume.hpp"
+#include "setup/shape_volume.hpp"
 
 #include "app/shapes.hpp"
-#include "run/body_volumes.hpp"
 #include "scene/units.hpp"
+#include "setup/body_volumes.hpp"
 
 using namespace vsb::app;
 using vsb::test::add_body;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// When a run says that its threads wait.
-#include "run/waiting_threads.hpp"
+#include "engine/waiting_threads.hpp"
 
 #include "support.hpp"
 

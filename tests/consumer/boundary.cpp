@@ -2,7 +2,7 @@
 /// \file
 /// A shared library of a particle code that has vsb find the boundary nodes of its particles, of which it
 /// gives the positions alone.
-#include <vsb/kernels/update_occupancy.hpp>
+#include <vsb/kernels/boundary/update_occupancy.hpp>
 #include <vsb/physics/linear_basis.hpp>
 
 using Exec = Kokkos::DefaultHostExecutionSpace;

@@ -3,15 +3,15 @@
 /// Every kernel, region and allocation carries a label that starts with "vsb::", so that profilers name them.
 #include <algorithm>
 #include <set>
-#include <vsb/kernels/balance.hpp>
-#include <vsb/kernels/flag_boundary_particles.hpp>
-#include <vsb/kernels/health.hpp>
-#include <vsb/kernels/plastic_strain.hpp>
-#include <vsb/kernels/remove_particles.hpp>
-#include <vsb/kernels/self_balance.hpp>
-#include <vsb/kernels/smooth_particles.hpp>
-#include <vsb/kernels/static_solution.hpp>
-#include <vsb/kernels/unsupported_load.hpp>
+#include <vsb/kernels/boundary/flag_boundary_particles.hpp>
+#include <vsb/kernels/boundary/self_balance.hpp>
+#include <vsb/kernels/particles/remove_particles.hpp>
+#include <vsb/kernels/readout/balance.hpp>
+#include <vsb/kernels/readout/health.hpp>
+#include <vsb/kernels/readout/plastic_strain.hpp>
+#include <vsb/kernels/readout/smooth_particles.hpp>
+#include <vsb/kernels/statics/static_solution.hpp>
+#include <vsb/kernels/statics/unsupported_load.hpp>
 
 #include "wide_bases.hpp"
 

@@ -4,8 +4,9 @@
 
   views    the standard library, Kokkos, views, the compiler's intrinsics
   physics  the standard library, Kokkos_Complex, physics, and of views what describes a point (POINT_VIEWS)
-  kernels  the standard library, Kokkos, kernels, physics, views
-The programs' libraries (files, command line, formats) live in apps alone, so the above rules them out here.
+  kernels  the standard library, Kokkos, kernels, physics, views; among the rooms within, KERNELS
+  apps     what they like of these and of other libraries; of each other, the rooms before them in APPS
+The programs' libraries (files, command line, formats) live in apps alone, so the above rules them out elsewhere.
 """
 import os
 import pathlib
@@ -18,8 +19,18 @@ ALLOWED = {
     "views": [STANDARD, r"Kokkos_\w+\.hpp", r"vsb/views/\w+\.hpp", r"immintrin\.h"],
     "physics": [STANDARD, r"Kokkos_Complex\.hpp", r"vsb/physics/\w+\.hpp",
                 rf"vsb/views/({'|'.join(POINT_VIEWS)})\.hpp"],
-    "kernels": [STANDARD, r"Kokkos_\w+\.hpp", r"vsb/(kernels|physics|views)/\w+\.hpp"],
+    "kernels": [STANDARD, r"Kokkos_\w+\.hpp", r"vsb/(kernels(/\w+)?|physics|views)/\w+\.hpp"],
 }
+# The two engines know nothing of each other, but that lanes begin with the particle kernels' types and end in them.
+KERNELS = {
+    "particles": ("particles", "boundary"),
+    "boundary": ("particles", "boundary"),
+    "statics": ("particles", "boundary", "statics"),
+    "mesh": ("mesh",),
+    "readout": ("particles", "boundary", "readout"),
+    "lanes": ("particles", "boundary", "readout", "lanes"),
+}
+APPS = ("scene", "setup", "engine", "report", "files", "run", "study")
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<].*)$', re.MULTILINE)
 TEXT = (".hpp", ".cpp", ".py", ".sh", ".cmake", ".txt", ".toml", ".json", ".md", ".yml", ".yaml", ".cff", ".in", "")
 SKIPPED = {".git", "build", "results", "third_party", "__pycache__"}
@@ -36,6 +47,16 @@ def include_violations(root):
                 name = re.match(r'<([^>]+)>', what)
                 if not name or not any(re.fullmatch(pattern, name.group(1)) for pattern in patterns):
                     found.append(f"{path.relative_to(root)}: '#include {what.strip()}' is not for {room}")
+    for path in sorted((root / "kernels").glob("*/*.hpp")):
+        own = path.parent.name
+        for room in re.findall(r"<vsb/kernels/(\w+)/", path.read_text()):
+            if room not in KERNELS.get(own, ()):
+                found.append(f"{path.relative_to(root)}: kernels/{own} includes nothing of kernels/{room}")
+    for path in sorted(path for own in APPS for path in (root / "apps" / own).glob("*.[hc]pp*")):
+        own = path.parent.name
+        for room in re.findall(r'#include "(\w+)/', path.read_text()):
+            if room not in APPS[:APPS.index(own) + 1]:
+                found.append(f"{path.relative_to(root)}: apps/{own} includes nothing of apps/{room}")
     if files < 20:
         found.append(f"only {files} headers under {root}: is that the top of the tree?")
     return found

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// Does not compile, and says why: no execution space of this build reaches memory `Elsewhere`.
-#include <vsb/kernels/mark_boundary_nodes.hpp>
+#include <vsb/kernels/boundary/mark_boundary_nodes.hpp>
 #include <vsb/physics/linear_basis.hpp>
 
 struct Elsewhere {

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 #include <map>
-#include <vsb/kernels/lane_loads.hpp>
-#include <vsb/kernels/spline_lane_step.hpp>
+#include <vsb/kernels/lane_step.hpp>
+#include <vsb/kernels/lanes/loads.hpp>
 
 #include "support.hpp"
 

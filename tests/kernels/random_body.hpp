@@ -3,7 +3,7 @@
 /// Closed bodies of random shape, on a random lattice, anywhere on a grid of unit cells.
 #pragma once
 
-#include <vsb/kernels/balance.hpp>
+#include <vsb/kernels/readout/balance.hpp>
 
 #include "support.hpp"
 

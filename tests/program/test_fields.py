@@ -252,7 +252,7 @@ class Reading(FieldTest):
 class Pictures(FieldTest):
     def plot(self, *runs):
         picture = self.folder / "rings.png"
-        done = subprocess.run([sys.executable, ROOT / "apps" / "plot_rings.py", picture, *runs], capture_output=True, text=True)
+        done = subprocess.run([sys.executable, ROOT / "apps" / "plot" / "plot_rings.py", picture, *runs], capture_output=True, text=True)
         return done, picture
 
     def test_rings_side_by_side(self):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The pictures of a run, apps/plot.py and apps/plot_stages.py: what is drawn where, and which frame."""
+"""The pictures of a run, apps/plot/plot.py and apps/plot/plot_stages.py: what is drawn where, and which frame."""
 import json
 import subprocess
 import sys
@@ -11,14 +11,14 @@ import numpy as np
 from PIL import Image
 from vsb_program import ROOT, SCENES, ProgramTest, frames, last_fields, vsb
 
-APPS = ROOT / "apps"
-sys.path.insert(0, str(APPS))
+PLOT = ROOT / "apps" / "plot"
+sys.path.insert(0, str(PLOT))
 import particle_boxes  # noqa: E402
 import plot  # noqa: E402
 
 
 def script(name, *arguments):
-    return subprocess.run([sys.executable, APPS / name, *map(str, arguments)], capture_output=True, text=True, timeout=300)
+    return subprocess.run([sys.executable, PLOT / name, *map(str, arguments)], capture_output=True, text=True, timeout=300)
 
 
 def coloured(picture):

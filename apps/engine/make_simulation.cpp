@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include "engine/simulation_instances.hpp"
+#include "setup/place_particles.hpp"
+
+namespace vsb::app {
+
+std::unique_ptr<Simulation> make_simulation(const Scene& scene, PlacedParticles* placed) {
+  if (scene.grid.mapped()) return make_instance<InstanceOf::mapped>(scene, placed);
+  if (scene.single_precision) return make_instance<InstanceOf::linear_float>(scene, placed);
+  switch (scene.method.basis) {
+    case BasisKind::ugimp:
+      return make_instance<InstanceOf::ugimp>(scene, placed);
+    case BasisKind::quadratic_bspline:
+      return make_instance<InstanceOf::quadratic_bspline>(scene, placed);
+    default:
+      return make_instance<InstanceOf::linear>(scene, placed);
+  }
+}
+
+std::string ByteHash::text() const {
+  return fmt::format("{:016x}", hash_);
+}
+
+std::string state_hash(Simulation& simulation) {
+  ByteHash hash;
+  simulation.save_particles(hash);
+  return hash.text();
+}
+
+int count_particles(const Scene& scene) {
+  return static_cast<int>(place_particles(scene).position.size());
+}
+
+}  // namespace vsb::app

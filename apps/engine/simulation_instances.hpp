@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// The simulations that the program can make, one for each precision and basis, in all dimensions; each is
+/// compiled on its own, from simulation_instance.cpp.in.
+#pragma once
+
+#include "engine/simulation.hpp"
+
+namespace vsb::app {
+
+enum class InstanceOf { linear, linear_float, mapped, ugimp, quadratic_bspline };
+
+template <InstanceOf instance>
+std::unique_ptr<Simulation> make_instance(const Scene& scene, PlacedParticles* placed);
+
+}  // namespace vsb::app

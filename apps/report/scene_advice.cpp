@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/scene_advice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scene/read_volumetric.hpp"
+#include "setup/region_size.hpp"
+
+namespace vsb::app {
+
+namespace {
+
+/// Whether a face of the grid, of any direction, holds a component of the motion.
+bool is_held(const Scene& scene, size_t component) {
+  for (const auto& faces : scene.faces.fixed)
+    for (const unsigned char fixed : faces)
+      if (fixed >> component & 1) return true;
+  return false;
+}
+
+/// Of the tractions where the bodies are, and of each body's weight where something holds it: what falls
+/// freely is not strained by it.
+double largest_load(const Scene& scene) {
+  double load = 0;
+  const auto grid = bounding_box(scene.grid, scene.dimension);
+  for (const auto& body : scene.bodies) {
+    const auto box = bounds_of(body.region, grid, scene.dimension);
+    for (const auto& traction : scene.tractions)
+      load = std::max(load, largest_stress(traction.field, box.lower, box.upper));
+    for (size_t i = 0; i < 3; ++i)
+      if (is_held(scene, i))
+        load = std::max(load, body.density * std::abs(scene.gravity[i]) * (box.upper[i] - box.lower[i]));
+  }
+  return load;
+}
+
+double smallest_modulus(const Scene& scene) {
+  double modulus = scene.bodies.front().material.youngs_modulus;
+  for (const auto& body : scene.bodies) modulus = std::min(modulus, body.material.youngs_modulus);
+  return modulus;
+}
+
+/// Of the softest body, about.
+double strain_by(const Scene& scene, const TractionSpec& traction) {
+  const auto box = bounding_box(scene.grid, scene.dimension);
+  return largest_stress(traction.field, box.lower, box.upper) / smallest_modulus(scene);
+}
+
+/// By what the loads displace the softest body, about, in cells of a uniform grid.
+double displacement_in_cells(const Scene& scene) {
+  double extent = 0;
+  const auto grid = bounding_box(scene.grid, scene.dimension);
+  for (const auto& body : scene.bodies) {
+    const auto box = bounds_of(body.region, grid, scene.dimension);
+    for (size_t i = 0; i < static_cast<size_t>(scene.dimension); ++i)
+      extent = std::max(extent, (box.upper[i] - box.lower[i]) / scene.grid.spacing[i]);
+  }
+  return largest_load(scene) / smallest_modulus(scene) * extent;
+}
+
+/// Displacements in cells below which single precision loses what a step adds to them: of a column under its
+/// own weight 6e-5 cells came out 10 % (particle kernels 99 %) wrong, 6e-4 cells at most 2 %.
+constexpr double least_float_displacement = 3e-4;
+
+/// A strain by which a boundary moves through cells.
+constexpr double large_strain = 0.05;
+
+/// Whether the place of the boundary decides where a traction acts.
+bool acts_on_nodes(const TractionSpec& t) {
+  return t.imposition == Imposition::virtual_stress || t.imposition == Imposition::virtual_stress_original;
+}
+
+/// Whether a body moves as a whole, as far as a scene shows before it runs.
+bool moves_as_a_whole(const Scene& scene) {
+  for (const auto& body : scene.bodies)
+    if (body.velocity.value != Point{} || body.velocity.gradient != std::array<Point, 3>{}) return true;
+  const auto floats = [](const TractionSpec& t) {
+    return std::holds_alternative<HydrostaticSpec>(t.field) ||
+           std::holds_alternative<Affine<Stress6>>(t.field);
+  };
+  if (std::any_of(scene.tractions.begin(), scene.tractions.end(), floats)) return false;
+  for (size_t i = 0; i < 3; ++i)
+    if (scene.gravity[i] != 0 && !is_held(scene, i)) return true;
+  return false;
+}
+
+/// The fewest particles per cell and direction of a body, where its lattice follows the axes of the grid.
+double fewest_per_cell(const Scene& scene, const BodySpec& body) {
+  double fewest = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < static_cast<size_t>(scene.dimension); ++i) {
+    if (const auto* cells = std::get_if<CellLattice>(&body.lattice))
+      fewest = std::min<double>(fewest, cells->particles_per_cell[i]);
+    const auto* uniform = std::get_if<UniformLattice>(&body.lattice);
+    if (uniform && !scene.grid.mapped())
+      fewest = std::min(fewest, scene.grid.spacing[i] / uniform->spacing[i]);
+  }
+  return fewest;
+}
+
+/// The force ratio below which runs with B-splines hardly get.
+constexpr double least_spline_ratio = 3e-6;
+
+/// By which a load may miss its final value in the last step.
+constexpr double round_off = 1e-9;
+
+/// Of kappa with the re-map of the velocity (MUSL), however little of a cell is filled.
+double largest_stable_kappa(const Scene& scene) {
+  return scene.method.basis == BasisKind::quadratic_bspline ? 1.5 : 1.3;
+}
+
+}  // namespace
+
+std::string units_hint(const Scene& scene) {
+  const double modulus = smallest_modulus(scene);
+  const double load = largest_load(scene), ratio = load / modulus;
+  if (!(ratio > 0.1)) return "";
+  return fmt::format(
+      "largest load / smallest Young's modulus = {:.3g} Pa / {:.3g} Pa = {:.2g}: check the units", load,
+      modulus, ratio);
+}
+
+std::vector<std::string> scene_advice(const Scene& scene) {
+  std::vector<std::string> advice;
+  if (const auto hint = units_hint(scene); !hint.empty()) advice.push_back(hint);
+  if (scene.single_precision)
+    if (const double moved = displacement_in_cells(scene); moved > 0 && moved < least_float_displacement)
+      advice.push_back(fmt::format(
+          "the loads displace the bodies by some {:.1g} of a cell, of which precision = \"float\" "
+          "loses a good part: stresses are right, displacements are not; take \"double\"",
+          moved));
+  for (const auto& traction : scene.tractions)
+    if (const double strain = strain_by(scene, traction);
+        traction.has_surface && !traction.carried && acts_on_nodes(traction) && strain > large_strain)
+      advice.push_back(fmt::format(
+          "traction '{}' may strain a body by {:.2g}, and its 'surface' is fixed in space: the loaded "
+          "boundary may move out of it; with configuration = \"initial\" it moves with the material",
+          traction.name, strain));
+  if (scene.time.until_static && scene.method.damping == 0)
+    advice.emplace_back(
+        "method.damping = 0: nothing takes the oscillation away, so the run may never become static; 0.05 to "
+        "0.3 is usual");
+  if (scene.method.damping > 0 && moves_as_a_whole(scene))
+    advice.push_back(
+        fmt::format("method.damping = {:g} on a body that moves as a whole (an initial velocity, or gravity "
+                    "that no face holds) brakes that motion too: set it to 0",
+                    scene.method.damping));
+  for (const auto& body : scene.bodies)
+    if (const double n = fewest_per_cell(scene, body); n < 2 - 1e-9)
+      advice.push_back(
+          fmt::format("body '{}' has {:.3g} < 2 particles per cell in a direction: cells open up where it "
+                      "stretches, and motions "
+                      "that such particles do not resist remain; give particles_per_cell = 2 or more",
+                      body.name, n));
+  if (!scene.method.averaged && scene.dimension > 1)
+    for (const auto& body : scene.bodies)
+      if (may_lock(body))
+        advice.push_back(fmt::format(
+            "body '{}' has poisson_ratio = {:g} and method.volumetric = \"full\": near 0.5 cells lock, and "
+            "stresses are wrong by 5 % at 0.4, 40 % at 0.49 (linear functions; a tenth of it with "
+            "B-splines); "
+            "{}",
+            body.name, body.material.poisson_ratio,
+            scene.method.basis == BasisKind::ugimp ? "another basis can average (method.volumetric)"
+                                                   : "\"averaged\" cures it"));
+  if (scene.method.basis == BasisKind::quadratic_bspline && scene.time.until_static &&
+      scene.time.until_static->force_ratio < least_spline_ratio)
+    advice.push_back(fmt::format(
+        "time.until_static.force_ratio = {:g}: with B-splines, nodes that hold on to a corner of one "
+        "particle "
+        "hardly come to rest, so the run may never become static; {:g}, stronger damping (0.4), or --static",
+        scene.time.until_static->force_ratio, static_spline_ratio));
+  if (scene.time.kappa > largest_stable_kappa(scene))
+    advice.push_back(
+        fmt::format("time.kappa = {:.4g} is above the stability limit of about {:g}; give a smaller one",
+                    scene.time.kappa, largest_stable_kappa(scene)));
+  return advice;
+}
+
+std::vector<std::string> short_run_advice(const Scene& scene) {
+  std::vector<std::string> advice;
+  const double end = scene.time.dt * static_cast<double>(scene.time.steps);
+  for (size_t k = 0; k < scene.tractions.size(); ++k) {
+    const auto& traction = scene.tractions[k];
+    const double settled = traction.time.settled_at();
+    if (!std::isfinite(settled)) continue;
+    const double last = traction.time(end), final = traction.time(settled);
+    if (std::abs(last - final) < round_off * std::abs(final)) continue;
+    const std::string share =
+        final == 0 ? fmt::format("{:.3g} times its full stress, where its final value is 0", last)
+                   : fmt::format("{:.3g} % of its final value", 100 * last / final);
+    advice.push_back(fmt::format(
+        "traction '{}' is at {} at the last possible step: {} = {} ends {} at {:.6g} s, and "
+        "traction[{}].time "
+        "is constant from {:.6g} s on",
+        traction.name, share, scene.time.until_static ? "time.until_static.max_steps" : "time.steps",
+        scene.time.steps, scene.removal ? "a stage" : "the run", end, k, settled));
+  }
+  return advice;
+}
+
+}  // namespace vsb::app

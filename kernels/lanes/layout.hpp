@@ -1,0 +1,342 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Which groups of cells a body needs and which nodes these have: cell lanes without their particles.
+#pragma once
+
+#include <vector>
+#include <vsb/kernels/lanes/memory.hpp>
+
+namespace vsb {
+
+/// The box that holds cells lowest, ..., highest with a margin of void cells, so that the cells around them
+/// are known (Algorithm 1) and particles can move as far as `reach` says. It may reach over the faces of the
+/// grid: groups begin at the lowest cell along x.
+template <int Dim, class Real>
+CellBox<Dim> box_around(const Vector<Dim, int>& lowest, const Vector<Dim, int>& highest,
+                        const Reach<Dim>& reach) {
+  constexpr int width = Lanes<Real>::width;
+  CellBox<Dim> box;
+  for (int i = 0; i < Dim; ++i) {
+    const int unit = i == 0 ? width : 1, void_cells = i == 0 ? std::max(width, 2) : 2;
+    const int below = void_cells + unit * reach.below[i], above = void_cells + unit * reach.above[i];
+    box.first[i] = lowest[i] - below;
+    box.cells[i] = highest[i] - lowest[i] + 1 + below + above;
+    if (i == 0) box.cells[i] = (box.cells[i] + width - 1) / width * width;
+  }
+  return box;
+}
+
+namespace kernel {
+
+/// The bin of a particle is its cell in a box.
+template <int Dim, class Real>
+struct BoxBasis {
+  UniformGrid<Dim, Real> grid;
+  CellBox<Dim> box;
+  KOKKOS_FUNCTION bool contains(const Vector<Dim, Real>& x) const { return grid.contains(x); }
+  KOKKOS_FUNCTION int bin(const Vector<Dim, Real>& x) const { return bin_of_cell(grid.cell_containing(x)); }
+  KOKKOS_FUNCTION int bin_of_cell(const Vector<Dim, int>& cell) const {
+    int index = 0;
+    for (int i = Dim - 1; i >= 0; --i) index = index * box.cells[i] + cell[i] - box.first[i];
+    return index;
+  }
+  int bin_count() const {
+    int n = 1;
+    for (int i = 0; i < Dim; ++i) n *= box.cells[i];
+    return n;
+  }
+};
+
+/// How many slots a group needs: the most particles of a cell. One place in the box.
+template <int Dim, class Real, class Device>
+struct NeededSlots {
+  using Ints = typename CellLanes<Dim, Real, Device>::Ints;
+  Ints count;   ///< [cell of the box]: particles
+  Ints needed;  ///< [place]
+  KOKKOS_FUNCTION void operator()(int place) const {
+    constexpr int width = Lanes<Real>::width;
+    int most = 0;
+    for (int l = 0; l < width; ++l) most = math::max(most, static_cast<int>(count(place * width + l)));
+    needed(place) = most;
+  }
+};
+
+/// The most that is needed from `below` places before to `above` places behind along an axis. One place in
+/// the box.
+template <int Dim, class Real, class Device>
+struct NeededAround {
+  using Ints = typename CellLanes<Dim, Real, Device>::Ints;
+  CellLanes<Dim, Real, Device> lanes;
+  Ints needed, around;
+  int axis, below, above;
+  KOKKOS_FUNCTION void operator()(int place) const {
+    const int rows = lanes.rows_per_layer(), per_row = lanes.groups_per_row();
+    const int stride = axis == 0 ? 1 : axis < Dim - 1 ? per_row : per_row * rows;
+    const int places = axis == 0 ? per_row : axis < Dim - 1 ? rows : lanes.layers();
+    const int at = place / stride % places;
+    int most = 0;
+    for (int i = math::max(-below, -at); i <= math::min(above, places - 1 - at); ++i)
+      most = math::max(most, static_cast<int>(needed(place + i * stride)));
+    around(place) = most;
+  }
+};
+
+/// How many slots a group gets.
+template <int Dim, class Real, class Device>
+struct GroupRoom {
+  typename CellLanes<Dim, Real, Device>::Ints needed;    ///< [place]
+  typename CellLanes<Dim, Real, Device>::Ints reached;   ///< [place]: above zero where there is a group
+  typename CellLanes<Dim, Real, Device>::Ints expected;  ///< [place]: slots that may be needed
+  int slack;                                             ///< slots to spare
+  KOKKOS_FUNCTION int capacity(int place) const { return reached(place) > 0 ? expected(place) + slack : 0; }
+};
+
+template <int Dim, class Real, class Device>
+struct CountGroups {
+  GroupRoom<Dim, Real, Device> room;
+  KOKKOS_FUNCTION void operator()(int place, int& groups, int& slots) const {
+    const int capacity = room.capacity(place);
+    if (capacity == 0) return;
+    ++groups;
+    slots += capacity;
+  }
+};
+
+/// Lines the groups up, one after the other; a single work item.
+template <int Dim, class Real, class Device>
+struct PlaceGroups {
+  CellLanes<Dim, Real, Device> lanes;
+  GroupRoom<Dim, Real, Device> room;
+
+  KOKKOS_FUNCTION void operator()(int) const {
+    const int per_row = lanes.groups_per_row(), places = lanes.row_count() * per_row;
+    int group = 0, slot = 0;
+    for (int place = 0; place < places; ++place) {
+      const int capacity = room.capacity(place);
+      if (capacity == 0) continue;
+      auto& g = lanes.groups(group++);
+      g = {};
+      g.first = slot;
+      g.slots = room.needed(place);
+      g.capacity = capacity;
+      g.x = place % per_row;
+      g.row = place / per_row;
+      slot += capacity;
+    }
+  }
+};
+
+/// Numbers the nodes of the groups, and says where in the box groups and nodes are; a single work item.
+template <int Dim, class Real, class Device>
+struct NumberNodes {
+  CellLanes<Dim, Real, Device> lanes;
+
+  KOKKOS_FUNCTION void operator()(int, int& nodes) const {
+    constexpr int width = Lanes<Real>::width;
+    const int per_row = lanes.groups_per_row(), rows = lanes.node_rows_of_cell();
+    int layer = 0;
+    for (int g = 0; g < lanes.group_count; ++g) {
+      const auto& of = lanes.groups(g);
+      while (layer <= of.row / lanes.rows_per_layer()) lanes.layer_first(layer++) = g;
+      lanes.group_at(of.row * per_row + of.x) = g;
+      for (int c = 0; c < rows; ++c) {
+        const int chunk = lanes.node_row_of_cell(of.row, c) * (per_row + 1) + of.x;
+        lanes.chunk_at(chunk) = lanes.chunk_at(chunk + 1) = 0;
+      }
+    }
+    while (layer <= lanes.layers()) lanes.layer_first(layer++) = lanes.group_count;
+    int chunk = 0;
+    const int chunks = static_cast<int>(lanes.chunk_at.extent(0)),
+              chunks_per_plane = lanes.node_rows_per_plane() * (per_row + 1);
+    for (int n = 0; n < chunks; ++n) {
+      if (n % chunks_per_plane == 0) lanes.plane_first(n / chunks_per_plane) = chunk * width;
+      if (lanes.chunk_at(n) >= 0) lanes.chunk_at(n) = chunk++;
+    }
+    lanes.plane_first(chunks / chunks_per_plane) = chunk * width;
+    for (int g = 0; g < lanes.group_count; ++g)
+      for (int c = 0; c < rows; ++c) {
+        auto& of = lanes.groups(g);
+        const int node = lanes.chunk_at(lanes.node_row_of_cell(of.row, c) * (per_row + 1) + of.x) * width;
+        (lanes.dual ? lanes.stencils(g).node[c] : of.node[c]) = node;
+      }
+    nodes = chunk * width;
+  }
+};
+
+/// The components prescribed at a node, from the faces of the grid on which it lies; one chunk of nodes.
+template <int Dim, class Real, class Device>
+struct FixLaneNodes {
+  CellLanes<Dim, Real, Device> lanes;
+  LaneNodes<Dim, Real, Device> nodes;
+  Vector<Dim, int> last;  ///< node of the grid
+  Walls<Dim> walls;
+
+  KOKKOS_FUNCTION void operator()(int place) const {
+    constexpr int width = Lanes<Real>::width;
+    const int chunk = lanes.chunk_at(place);
+    if (chunk < 0) return;
+    const int per_row = lanes.groups_per_row() + 1, row = place / per_row;
+    const auto lowest = lanes.lowest_node();
+    auto ijk = lowest;
+    if constexpr (Dim == 2) ijk[1] += row;
+    if constexpr (Dim == 3) {
+      ijk[1] += row % lanes.node_rows_per_plane();
+      ijk[2] += row / lanes.node_rows_per_plane();
+    }
+    for (int i = 0; i < Dim; ++i) nodes.fixed(chunk, i) = 0;
+    for (int l = 0; l < width; ++l) {
+      ijk[0] = lowest[0] + place % per_row * width + l;
+      ComponentMask fixed = 0;
+      for (int i = 0; i < Dim; ++i) {
+        if (ijk[i] == 0) fixed = static_cast<ComponentMask>(fixed | walls.fixed[i][0]);
+        if (ijk[i] == last[i]) fixed = static_cast<ComponentMask>(fixed | walls.fixed[i][1]);
+      }
+      for (int i = 0; i < Dim; ++i)
+        if (fixed >> i & 1) nodes.fixed(chunk, i) |= std::uint32_t(1) << l;
+    }
+  }
+};
+
+}  // namespace kernel
+
+namespace detail {
+
+/// The last nodes of the scene's grid: dual cells are one more than its cells.
+template <int Dim, class Real, class Device>
+Vector<Dim, int> last_nodes(const LaneMemory<Dim, Real, Device>& m) {
+  auto last = m.grid.cells;
+  if (m.lanes.dual)
+    for (int i = 0; i < Dim; ++i) --last[i];
+  return last;
+}
+
+/// The nodes of lanes whose box and groups are known.
+template <class Exec, int Dim, class Real, class Device>
+void number_nodes(const Exec& exec, LaneMemory<Dim, Real, Device>& m) {
+  using Ints = typename CellLanes<Dim, Real, Device>::Ints;
+  auto& lanes = m.lanes;
+  const int per_row = lanes.groups_per_row(), layers = lanes.layers(), planes = Dim == 1 ? 1 : layers + 1,
+            chunks = planes * lanes.node_rows_per_plane() * (per_row + 1);
+  const auto ints = [](const std::string& name, int n) { return Ints(name, static_cast<size_t>(n)); };
+  lanes.layer_first = ints("vsb::layer_first", layers + 1);
+  lanes.plane_first = ints("vsb::plane_first", layers + 2);
+  lanes.group_at = ints("vsb::group_at", lanes.row_count() * per_row);
+  lanes.chunk_at = ints("vsb::chunk_at", chunks);
+  Kokkos::deep_copy(exec, lanes.group_at, -1);
+  Kokkos::deep_copy(exec, lanes.chunk_at, -1);
+  if (lanes.dual)
+    lanes.stencils = decltype(lanes.stencils)("vsb::lane_stencils", static_cast<size_t>(lanes.group_count));
+  int node_count = 0;
+  Kokkos::parallel_reduce("vsb::number_nodes", Kokkos::RangePolicy<Exec>(exec, 0, 1),
+                          kernel::NumberNodes<Dim, Real, Device>{lanes}, node_count);
+  exec.fence();
+  lanes.node_count = node_count;
+  m.packed_grid = m.grid;
+  m.packed_walls = m.walls;
+  if (static_cast<int>(m.nodes.data.extent(0)) < node_count) {
+    m.nodes.data = decltype(m.nodes.data)(
+        "vsb::lane_nodes", static_cast<size_t>(padded_rows<Real>(node_count + node_count / 16)),
+        static_cast<size_t>(lanes.dual ? m.nodes.dual_column_count : m.nodes.column_count));
+    m.nodes.fixed = decltype(m.nodes.fixed)("vsb::lane_nodes_fixed",
+                                            m.nodes.data.extent(0) / static_cast<size_t>(lanes.width));
+  } else {
+    Kokkos::deep_copy(exec, m.nodes.data, Real(0));
+  }
+  Kokkos::parallel_for("vsb::fix_lane_nodes", Kokkos::RangePolicy<Exec>(exec, 0, chunks),
+                       kernel::FixLaneNodes<Dim, Real, Device>{lanes, m.nodes, last_nodes(m), m.walls});
+}
+
+/// Groups and nodes for a box and the number of particles in each of its cells; the columns and numbers of
+/// the particles are left to the caller.
+template <class Exec, int Dim, class Real, class Device>
+void number_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const CellBox<Dim>& box,
+                  const typename CellLanes<Dim, Real, Device>::Ints& count) {
+  auto& lanes = m.lanes;
+  lanes.box = box;
+  int groups = 0, slots = 0;
+  const Kokkos::RangePolicy<Exec> over_places(exec, 0, lanes.row_count() * lanes.groups_per_row());
+  using Ints = typename CellLanes<Dim, Real, Device>::Ints;
+  const auto places = static_cast<size_t>(lanes.row_count() * lanes.groups_per_row());
+  kernel::GroupRoom<Dim, Real, Device> room{Ints("vsb::needed_slots", places), {}, {}, m.slack};
+  Kokkos::parallel_for("vsb::needed_slots", over_places,
+                       kernel::NeededSlots<Dim, Real, Device>{count, room.needed});
+  room.reached = room.expected = room.needed;
+  if (m.reach.any()) {
+    const auto widen = [&](Ints& needed, int axis, int below, int above) {
+      const Ints around("vsb::slots_around", places);
+      Kokkos::parallel_for(
+          "vsb::slots_around", over_places,
+          kernel::NeededAround<Dim, Real, Device>{lanes, needed, around, axis, below, above});
+      needed = around;
+    };
+    // A place lies above those from which it is reached.
+    for (int i = 0; i < Dim; ++i) widen(room.reached, i, m.reach.above[i], m.reach.below[i]);
+    // The edge of a body is thinner than what will come.
+    room.expected = room.reached;
+    for (int i = 0; i < Dim; ++i) widen(room.expected, i, 1, 1);
+  }
+  Kokkos::parallel_reduce("vsb::count_groups", over_places, kernel::CountGroups<Dim, Real, Device>{room},
+                          groups, slots);
+  exec.fence();
+  lanes.group_count = groups;
+  lanes.slot_count = slots;
+  lanes.groups = decltype(lanes.groups)("vsb::lane_groups", static_cast<size_t>(groups));
+  Kokkos::parallel_for("vsb::place_groups", Kokkos::RangePolicy<Exec>(exec, 0, 1),
+                       kernel::PlaceGroups<Dim, Real, Device>{lanes, room});
+  number_nodes(exec, m);
+  int cells = 0;
+  Kokkos::parallel_reduce(
+      "vsb::count_cells", Kokkos::RangePolicy<Exec>(exec, 0, static_cast<int>(count.extent(0))),
+      KOKKOS_LAMBDA(int cell, int& n) { n += count(cell) > 0; }, cells);
+  exec.fence();
+  set_sweeps(lanes,
+             m.sweeps == Sweeps::one || (m.sweeps == Sweeps::chosen && one_sweep_is_faster(lanes, cells)));
+}
+
+}  // namespace detail
+
+/// What a group has that does not follow from the rest.
+struct GroupShape {
+  int x, row, slots, capacity;
+};
+
+/// Lays lanes out as others were; columns and numbers of the particles are left to the caller. False where
+/// that makes no sense, and then nothing is changed.
+template <class Exec, int Dim, class Real, class Device>
+bool lay_out_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const CellBox<Dim>& box,
+                   const std::vector<GroupShape>& shape) {
+  auto lanes = m.lanes;
+  lanes.box = box;
+  for (int i = 0; i < Dim; ++i)
+    if (box.cells[i] < 1 || box.cells[i] > m.grid.cells[i] + 8 * lanes.width) return false;
+  lanes.groups = decltype(lanes.groups)("vsb::lane_groups", shape.size());
+  lanes.group_count = static_cast<int>(shape.size());
+  lanes.slot_count = 0;
+  const auto groups = Kokkos::create_mirror_view(lanes.groups);
+  int last = -1;
+  for (size_t g = 0; g < shape.size(); ++g) {
+    const auto& of = shape[g];
+    if (of.x < 0 || of.x >= lanes.groups_per_row() || of.row < 0 || of.row >= lanes.row_count()) return false;
+    const int place = of.row * lanes.groups_per_row() + of.x;
+    if (place <= last || of.slots < 0 || of.capacity < of.slots || of.capacity > m.lanes.particle_count + 64)
+      return false;
+    last = place;
+    groups(g) = {};
+    groups(g).first = lanes.slot_count;
+    groups(g).slots = of.slots;
+    groups(g).capacity = of.capacity;
+    groups(g).x = of.x;
+    groups(g).row = of.row;
+    lanes.slot_count += of.capacity;
+  }
+  Kokkos::deep_copy(lanes.groups, groups);
+  m.lanes = lanes;
+  detail::number_nodes(exec, m);
+  detail::allocate_columns(m.lanes, m.lanes.slot_count);
+  detail::allocate_numbers(m.lanes, m.lanes.slot_count);
+  detail::allocate_leavers(exec, m);
+  exec.fence();
+  return true;
+}
+
+}  // namespace vsb

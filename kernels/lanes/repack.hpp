@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// Packs all particles of cell lanes anew, where one that left its cell finds no place
+/// (kernels/lanes/migrate.hpp).
+#pragma once
+
+#include <vsb/kernels/lanes/build.hpp>
+
+namespace vsb {
+
+namespace kernel {
+
+/// One list: the particles without a place.
+template <int Dim, class Real, class Device>
+struct UnpackHomeless {
+  Leavers<Dim, Real, Device> leavers;
+  Particles<Dim, Real, Device> particles;
+  UniformGrid<Dim, Real> grid;
+  int state_size;  ///< numbers of material state
+  KOKKOS_FUNCTION void operator()(int k) const {
+    using Columns = CellLanes<Dim, Real, Device>;
+    leavers.for_each_homeless(k, [&](int n, int l) {
+      const auto& head = leavers.head(n);
+      const int id = head.id[l];
+      const auto number = [&](int column) { return leavers.data(n, column * leavers.width + l); };
+      Vector<Dim, Real> xi;
+      for (int i = 0; i < Dim; ++i) xi[i] = number(Columns::xi_column + i);
+      const auto x = grid.map(head.cell[l], xi).x;
+      for (int i = 0; i < Dim; ++i) {
+        particles.position(id, i) = x[i];
+        particles.velocity(id, i) = number(Columns::velocity_column + i);
+      }
+      particles.mass(id) = number(Columns::mass_column);
+      particles.volume(id) = number(Columns::volume_column);
+      for (int c = 0; c < particles.stress_size; ++c)
+        particles.cauchy_stress(id, c) = number(Columns::stress_column + c);
+      for (int c = 0; c < state_size; ++c)
+        particles.material_state(id, c) = number(Columns::state_column + c);
+    });
+  }
+};
+
+/// One group of the lanes before: counts its particles into the cells of the new box.
+template <int Dim, class Real, class Device>
+struct CountLanes {
+  CellLanes<Dim, Real, Device> before;
+  BoxBasis<Dim, Real> box;
+  typename CellLanes<Dim, Real, Device>::Ints count;
+  KOKKOS_FUNCTION void operator()(int g) const {
+    constexpr int width = Lanes<Real>::width;
+    const auto& group = before.groups(g);
+    for (int l = 0; l < width; ++l) {
+      int n = 0;
+      for (int s = group.first; s < group.first + group.slots; ++s) n += before.held(s) >> l & 1;
+      if (n > 0) count(box.bin_of_cell(before.cell(group, l))) = n;
+    }
+  }
+};
+
+/// Where every entry of the new lanes comes from: an entry of those before (>= 0), a leaver (-2 - n), or
+/// nowhere (-1). One group of those before.
+template <int Dim, class Real, class Device>
+struct FindSources {
+  CellLanes<Dim, Real, Device> before, lanes;
+  typename CellLanes<Dim, Real, Device>::Ints source;
+  KOKKOS_FUNCTION size_t entry(const Vector<Dim, int>& cell, int slot) const {
+    constexpr int width = Lanes<Real>::width;
+    int row = Dim == 1 ? 0 : cell[Dim - 1] - lanes.box.first[Dim - 1];
+    if constexpr (Dim == 3) row = row * lanes.rows_per_layer() + cell[1] - lanes.box.first[1];
+    const int x = cell[0] - lanes.box.first[0];
+    const auto& group = lanes.groups(lanes.group_at(row * lanes.groups_per_row() + x / width));
+    return static_cast<size_t>(group.first + slot) * width + static_cast<size_t>(x % width);
+  }
+  KOKKOS_FUNCTION void operator()(int g) const {
+    constexpr int width = Lanes<Real>::width;
+    const auto& group = before.groups(g);
+    for (int l = 0; l < width; ++l) {
+      int n = 0;
+      for (int s = 0; s < group.slots; ++s) {
+        const size_t e = static_cast<size_t>(group.first + s) * width + static_cast<size_t>(l);
+        if (before.held(group.first + s) >> l & 1)
+          source(entry(before.cell(group, l), n++)) = static_cast<int>(e);
+      }
+    }
+  }
+};
+
+/// The leavers without a place, list by list; a single work item. First counts them into their cells, then
+/// finds the entries they go to.
+template <int Dim, class Real, class Device>
+struct PlaceHomeless {
+  FindSources<Dim, Real, Device> find;
+  Leavers<Dim, Real, Device> leavers;
+  BoxBasis<Dim, Real> box;
+  typename CellLanes<Dim, Real, Device>::Ints count;
+  bool counting;
+  KOKKOS_FUNCTION void operator()(int) const {
+    for (int k = 0; k < find.before.layers(); ++k)
+      leavers.for_each_homeless(k, [&](int n, int l) {
+        const auto& cell = leavers.head(n).cell[l];
+        if (counting) {
+          ++count(box.bin_of_cell(cell));
+          return;
+        }
+        int s = 0;
+        while (find.source(find.entry(cell, s)) != -1) ++s;
+        find.source(find.entry(cell, s)) = -2 - (n * leavers.width + l);
+      });
+  }
+};
+
+/// The range of cells that hold particles or will hold a homeless leaver, and which way those went that found
+/// no group; a single work item.
+template <int Dim, class Real, class Device>
+struct OccupiedRange {
+  CellLanes<Dim, Real, Device> lanes;
+  Leavers<Dim, Real, Device> leavers;
+  Vector<Dim, int> grid_cells;
+  Kokkos::View<int*, Device> result;  ///< lowest and highest cell by axis, whether any went below or above,
+                                      ///< by axis, and the number of a lost particle
+
+  KOKKOS_FUNCTION void include(const Vector<Dim, int>& cell) const {
+    for (int i = 0; i < Dim; ++i) {
+      result(2 * i) = math::min(result(2 * i), cell[i]);
+      result(2 * i + 1) = math::max(result(2 * i + 1), cell[i]);
+    }
+  }
+  KOKKOS_FUNCTION void operator()(int) const {
+    constexpr int width = Lanes<Real>::width;
+    for (int i = 0; i < Dim; ++i) {
+      result(2 * i) = grid_cells[i];
+      result(2 * i + 1) = -1;
+      result(2 * Dim + 2 * i) = result(2 * Dim + 2 * i + 1) = 0;
+    }
+    int lost = -1;
+    for (int g = 0; g < lanes.group_count; ++g) {
+      const auto& group = lanes.groups(g);
+      const LaneMask cells = lanes.cells_with_particles(group);
+      for (int l = 0; l < width; ++l)
+        if (cells >> l & 1) include(lanes.cell(group, l));
+    }
+    for (int k = 0; k < lanes.layers(); ++k)
+      leavers.for_each_homeless(k, [&](int n, int l) {
+        const auto& cell = leavers.head(n).cell[l];
+        const int id = leavers.head(n).id[l];
+        bool inside = true;
+        for (int i = 0; i < Dim; ++i) inside = inside && cell[i] >= 0 && cell[i] < grid_cells[i];
+        if (inside) {
+          include(cell);
+          note_way(leavers.head(n), l);
+        } else if (lost < 0 || id < lost) {
+          lost = id;
+        }
+      });
+    result(4 * Dim) = lost;
+  }
+  KOKKOS_FUNCTION void note_way(const typename Leavers<Dim, Real, Device>::Head& head, int lane) const {
+    LaneGroup<Dim> from{};
+    from.x = head.x;
+    from.row = head.row;
+    const auto before = lanes.cell(from, lane);
+    for (int i = 0; i < Dim; ++i) {
+      if (head.cell[lane][i] < before[i]) result(2 * Dim + 2 * i) = 1;
+      if (head.cell[lane][i] > before[i]) result(2 * Dim + 2 * i + 1) = 1;
+    }
+  }
+};
+
+/// One column of a group of the lanes before: the slots in use, to where they cannot be overwritten.
+template <int Dim, class Real, class Device>
+struct SaveColumn {
+  CellLanes<Dim, Real, Device> before;
+  Kokkos::View<Real*, Device> column_before;
+  int column;
+  KOKKOS_FUNCTION void operator()(int g) const {
+    const auto& group = before.groups(g);
+    for (size_t e = before.begin(group); e < before.end(group); ++e) column_before(e) = *before.at(column, e);
+  }
+};
+
+/// One column of a group of the new lanes: the slots in use.
+template <int Dim, class Real, class Device>
+struct TakeColumn {
+  using Ints = typename CellLanes<Dim, Real, Device>::Ints;
+  Kokkos::View<const Real*, Device> before;
+  CellLanes<Dim, Real, Device> lanes;
+  Leavers<Dim, Real, Device> leavers;
+  Ints source;
+  int column;
+  KOKKOS_FUNCTION void operator()(int g) const {
+    const auto& group = lanes.groups(g);
+    const Real ghost = column < Dim ? Real(0.5) : Real(0);
+    for (size_t e = lanes.begin(group); e < lanes.end(group); ++e) {
+      const int from = source(e), leaver = -2 - from, width = lanes.width;
+      *lanes.at(column, e) = from >= 0     ? before(from)
+                             : leaver >= 0 ? leavers.data(leaver / width, column * width + leaver % width)
+                                           : ghost;
+    }
+  }
+};
+
+/// One slot of the new lanes: who is in it.
+template <int Dim, class Real, class Device>
+struct TakeIds {
+  typename CellLanes<Dim, Real, Device>::Ints before;
+  CellLanes<Dim, Real, Device> lanes;
+  Leavers<Dim, Real, Device> leavers;
+  typename CellLanes<Dim, Real, Device>::Ints source;
+  KOKKOS_FUNCTION void operator()(int slot) const {
+    constexpr int width = Lanes<Real>::width;
+    LaneMask held = 0;
+    for (int l = 0; l < width; ++l) {
+      const int e = slot * width + l, from = source(e), leaver = -2 - from;
+      lanes.id(e) = from >= 0     ? before(from)
+                    : leaver >= 0 ? leavers.head(leaver / width).id[leaver % width]
+                                  : -1;
+      if (from != -1) held |= LaneMask(1) << l;
+    }
+    lanes.held(slot) = held;
+  }
+};
+
+}  // namespace kernel
+
+/// Writes back the leavers without a place, which unpack_particles does not know.
+template <class Exec, int Dim, class Real, class Device>
+void unpack_homeless(const Exec& exec, const LaneMemory<Dim, Real, Device>& m,
+                     const Particles<Dim, Real, Device>& particles) {
+  Kokkos::parallel_for(
+      "vsb::unpack_homeless", Kokkos::RangePolicy<Exec>(exec, 0, m.lanes.layers()),
+      kernel::UnpackHomeless<Dim, Real, Device>{m.leavers, particles, m.grid, m.lanes.state_size});
+}
+
+/// Packs all particles anew, the leavers without a place among them. reach_out: with groups where these went.
+/// Returns -1, or the lowest number of a particle outside the grid, and then nothing is packed.
+template <class Exec, int Dim, class Real, class Device>
+int repack_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, bool reach_out = false) {
+  using Cells = CellLanes<Dim, Real, Device>;
+  using Ints = typename Cells::Ints;
+  const Kokkos::RangePolicy<Exec> once(exec, 0, 1);
+  const Cells before = m.lanes;
+  const Kokkos::View<int*, Device> range("vsb::occupied_range", 4 * Dim + 1);
+  Kokkos::parallel_for("vsb::occupied_range", once,
+                       kernel::OccupiedRange<Dim, Real, Device>{before, m.leavers, m.grid.cells, range});
+  exec.fence();
+  const auto found = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), range);
+  if (found(4 * Dim) >= 0) return found(4 * Dim);
+  Vector<Dim, int> lowest, highest;
+  for (int i = 0; i < Dim; ++i) {
+    lowest[i] = found(static_cast<size_t>(2 * i));
+    highest[i] = found(static_cast<size_t>(2 * i + 1));
+    const auto way = static_cast<size_t>(2 * Dim + 2 * i);
+    const int far = i == 0 ? 1 : math::min(math::max((highest[i] - lowest[i]) / 4, 2), 8);
+    if (reach_out && found(way) != 0) m.reach.below[i] = far;
+    if (reach_out && found(way + 1) != 0) m.reach.above[i] = far;
+  }
+  const kernel::BoxBasis<Dim, Real> basis{m.grid, box_around<Dim, Real>(lowest, highest, m.reach)};
+  const Ints count("vsb::particles_of_cell", static_cast<size_t>(basis.bin_count()));
+  const Kokkos::RangePolicy<Exec> over_groups(exec, 0, before.group_count);
+  Kokkos::parallel_for("vsb::count_lanes", over_groups,
+                       kernel::CountLanes<Dim, Real, Device>{before, basis, count});
+  kernel::PlaceHomeless<Dim, Real, Device> place{{before, {}, {}}, m.leavers, basis, count, true};
+  Kokkos::parallel_for("vsb::count_homeless", once, place);
+  m.lanes.data = {};  // only `before` holds it now
+  m.lanes.id = {};
+  m.lanes.held = {};
+  detail::number_lanes(exec, m, basis.box, count);
+  auto& lanes = m.lanes;
+  const int entries = lanes.slot_count * lanes.width;
+  const Ints source = detail::scratch(m.source, static_cast<size_t>(entries));
+  Kokkos::deep_copy(exec, source, -1);
+  place.find = {before, lanes, source};
+  place.counting = false;
+  Kokkos::parallel_for("vsb::find_sources", over_groups, place.find);
+  Kokkos::parallel_for("vsb::place_homeless", once, place);
+  const bool fits = static_cast<int>(before.data.extent(0)) >= entries;
+  if (fits)
+    lanes.data = before.data;
+  else
+    detail::allocate_columns(lanes, lanes.slot_count);
+  detail::allocate_numbers(lanes, lanes.slot_count);
+  const auto copy = detail::scratch(m.column_before, static_cast<size_t>(before.slot_count * before.width));
+  for (int c = 0; c < lanes.columns(); ++c) {
+    Kokkos::parallel_for("vsb::save_column", over_groups,
+                         kernel::SaveColumn<Dim, Real, Device>{before, copy, c});
+    Kokkos::parallel_for("vsb::take_column", Kokkos::RangePolicy<Exec>(exec, 0, lanes.group_count),
+                         kernel::TakeColumn<Dim, Real, Device>{copy, lanes, m.leavers, source, c});
+  }
+  Kokkos::parallel_for("vsb::take_ids", Kokkos::RangePolicy<Exec>(exec, 0, lanes.slot_count),
+                       kernel::TakeIds<Dim, Real, Device>{before.id, lanes, m.leavers, source});
+  exec.fence();
+  detail::allocate_leavers(exec, m);
+  return -1;
+}
+
+}  // namespace vsb

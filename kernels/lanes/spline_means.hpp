@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// The mean divergence on dual cell lanes (physics/mean_divergence.hpp), between the re-map and sweep C: the
+/// functions M_c, multilinear around the centres of the scene's cells, have the centres as corners of the
+/// dual cells, so that a particle has always the same 2^Dim of them.
+///
+/// A centre is kept where the lowest node of its cell is. The sums of V M_c and V M_c theta take the place of
+/// momentum sums, which are used up by then, and the means that of the increment dt a, likewise.
+#pragma once
+
+#include <vsb/kernels/lanes/linear_step.hpp>
+#include <vsb/kernels/lanes/spline_scatter.hpp>
+
+namespace vsb {
+
+/// Where in its dual cell a particle finds the functions of the centres around, per lane: at xi, but for
+/// lanes beside a wall, where the function inside is constant.
+template <int Dim, class P>
+struct CentreRoom {
+  Vector<Dim, P> least, most;
+  KOKKOS_FORCEINLINE_FUNCTION Vector<Dim, P> place(const Vector<Dim, P>& xi) const {
+    Vector<Dim, P> along;
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
+      const P above = math::select(xi[i] > least[i], xi[i], least[i]);
+      along[i] = math::select(above < most[i], above, most[i]);
+    });
+    return along;
+  }
+};
+
+/// `grid` is the dual grid.
+template <int Dim, class Real, class Device>
+KOKKOS_FUNCTION CentreRoom<Dim, typename Lanes<Real>::Pack> centre_room_of(
+    const CellLanes<Dim, Real, Device>& lanes, const LaneGroup<Dim>& group,
+    const UniformGrid<Dim, Real>& grid, const Walls<Dim>& walls) {
+  using P = typename Lanes<Real>::Pack;
+  CentreRoom<Dim, P> room;
+  for (int i = 0; i < Dim; ++i) {
+    room.least[i] = P(Real(0));
+    room.most[i] = P(Real(1));
+    for (int l = 0; l < P::width; ++l) {
+      const int node = lanes.cell(group, l)[i];
+      if (node == 0 && walls.mirrored(i, 0)) room.least[i].set(l, Real(1));
+      if (node == grid.cells[i] - 1 && walls.mirrored(i, 1)) room.most[i].set(l, Real(0));
+    }
+  }
+  return room;
+}
+
+/// The row of a stencil in which the centres at corners 2 r and 2 r + 1 of a dual cell are kept.
+constexpr int centre_row(int r) {
+  return (r >> 1) * 3 + (r & 1);
+}
+
+namespace kernel {
+
+/// Sums of V M_c and V M_c theta of a layer.
+template <int Dim, class Real, class Device>
+struct SumLaneDivergence {
+  using P = typename Lanes<Real>::Pack;
+  using Nodes = LaneNodes<Dim, Real, Device>;
+  using Sums = SplineLayerSums<1, 2, Dim, Real, Device>;
+  CellLanes<Dim, Real, Device> lanes;
+  Nodes nodes;
+  UniformGrid<Dim, Real> grid;  ///< dual
+  Walls<Dim> walls;
+
+  KOKKOS_FUNCTION void operator()(int layer) const {
+    Sums sums(lanes, nodes, layer);
+    for_each_group(lanes, layer, [&](const auto& group, int g) {
+      sums.begin(group, lanes.stencils(g));
+      add(group, sums);
+    });
+    sums.end();
+  }
+  [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void add(const LaneGroup<Dim>& group, Sums& sums) const {
+    const auto& stencil = lanes.stencils(lanes.number_of(group));
+    const auto theta = divergence_of(stencil);
+    const auto room = centre_room_of(lanes, group, grid, walls);
+    CellPolynomial<Dim, P> V_M, V_M_theta;
+    lane_sums::set_zero<Dim>(V_M);
+    lane_sums::set_zero<Dim>(V_M_theta);
+    for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
+      const auto xi = lanes.load_xi(entry);
+      const auto above = room.place(xi);
+      const P value = quadratic_at<Dim>(theta, Powers<Dim, P>(xi));
+      CellPolynomial<Dim, P> M;
+      M[0] = lanes.load(lanes.volume_column, entry);
+      static_for<Dim>([&](auto i) VSB_UNROLLED {
+        static_for<(1 << i)>([&](auto a) VSB_UNROLLED {
+          M[a | (1 << i)] = M[a] * above[i];
+          M[a] = M[a] * P(P(Real(1)) - above[i]);
+        });
+      });
+      static_for<M.size>([&](auto a) VSB_UNROLLED {
+        V_M[a] += M[a];
+        V_M_theta[a] += M[a] * value;
+      });
+    }
+    set_down(1, stencil, V_M, sums);
+    set_down(2, stencil, V_M_theta, sums);
+  }
+  /// dt tr L in a dual cell. Along direction i, r_1 has the slope 1 = r_0, and r_2 the slope r_1 - r_0 / 2.
+  KOKKOS_FORCEINLINE_FUNCTION QuadraticPolynomial<Dim, P> divergence_of(
+      const LaneStencil<Dim>& stencil) const {
+    QuadraticPolynomial<Dim, P> theta;
+    static_for<theta.size>([&](auto k) VSB_UNROLLED { theta[k] = P(Real(0)); });
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
+      QuadraticPolynomial<Dim, P> u;
+      coefficients_of(nodes, nodes.remapped_column + i, stencil, u);
+      const P scale(grid.inverse_spacing[i] * grid.spacing[0]);
+      static_for<u.size>([&](auto k) VSB_UNROLLED {
+        constexpr int step = stencil_size(i);
+        if constexpr (stencil_digit(k, i) == 1) theta[k - step] += scale * u[k];
+        if constexpr (stencil_digit(k, i) == 2) {
+          const P slope = scale * u[k];
+          theta[k - step] += slope;
+          theta[k - 2 * step] -= P(Real(0.5)) * slope;
+        }
+      });
+    });
+    return theta;
+  }
+  KOKKOS_FORCEINLINE_FUNCTION static void set_down(int column, const LaneStencil<Dim>& stencil,
+                                                   const CellPolynomial<Dim, P>& at_centre, Sums& sums) {
+    QuadraticPolynomial<Dim, P> at_node;
+    static_for<at_node.size>([&](auto k) VSB_UNROLLED { at_node[k] = P(Real(0)); });
+    static_for<at_centre.size>(
+        [&](auto a) VSB_UNROLLED { at_node[3 * centre_row(a >> 1) + (a & 1)] = at_centre[a]; });
+    sums.add(column, stencil, at_node);
+  }
+};
+
+}  // namespace kernel
+
+/// Where functions are small, and where they go.
+template <class Device>
+struct SmallMeans {
+  Kokkos::View<LaneMask*, Device> small, taken;  ///< [chunk]: those that are, those that take others in
+  Kokkos::View<int*, Device> home;               ///< [node]: of a small function, the node that takes it in
+};
+
+namespace kernel {
+
+/// theta_c of a chunk, as if no function were small; notes those that are.
+template <int Dim, class Real, class Device>
+struct DivideLaneSums : LaneNodeRows<Dim, Real, Device, 3> {
+  using Base = LaneNodeRows<Dim, Real, Device, 3>;
+  using Base::nodes;
+  using typename Base::P;
+  Real least;  ///< m^Dim
+  SmallMeans<Device> means;
+
+  KOKKOS_FUNCTION void operator()(int chunk) const {
+    const int node = chunk * P::width;
+    const P V = this->sum(1, node), V_theta = this->sum(2, node), zero(Real(0));
+    const auto some = V > zero;
+    math::select(some, V_theta / V, zero).store(nodes.at(nodes.increment_column, node));
+    means.small(chunk) = bits_of(some & (V < P(least)));
+    means.taken(chunk) = 0;
+  }
+};
+
+/// What the functions at the nodes of a chunk need to find those around them.
+template <int Dim, class Real, class Device>
+struct LaneMeans {
+  CellLanes<Dim, Real, Device> lanes;
+  LaneNodeRows<Dim, Real, Device, 3> rows;
+  CentreMeans<Dim, Real> functions;
+  SmallMeans<Device> means;
+  Vector<Dim, int> first;  ///< the cell whose function is at the lowest node of the box
+
+  /// Calls work(cell, node) for the nodes of a chunk, by its place in the box, whose bits are set in
+  /// bits(chunk).
+  template <class Work>
+  KOKKOS_FORCEINLINE_FUNCTION void for_each(const Kokkos::View<LaneMask*, Device>& bits, int place,
+                                            const Work& work) const {
+    const int chunk = lanes.chunk_at(place);
+    if (chunk < 0 || bits(chunk) == 0) return;
+    const int per_row = lanes.groups_per_row() + 1;
+    auto cell = first;
+    cell[0] += place % per_row * lanes.width;
+    for (int i = 1, row = place / per_row; i < Dim; ++i) {
+      cell[i] += row % (lanes.box.cells[i] + 1);
+      row /= lanes.box.cells[i] + 1;
+    }
+    for (int l = 0; l < lanes.width; ++l, ++cell[0])
+      if (bits(chunk) >> l & 1) work(cell, chunk * lanes.width + l);
+  }
+  /// The node of a cell's function, or -1.
+  KOKKOS_FORCEINLINE_FUNCTION int node_of(const Vector<Dim, int>& cell) const {
+    int row = 0;
+    for (int i = Dim - 1; i > 0; --i) {
+      const int at = cell[i] - first[i];
+      if (at < 0 || at > lanes.box.cells[i]) return -1;
+      row = row * (lanes.box.cells[i] + 1) + at;
+    }
+    const int x = cell[0] - first[0];
+    return x < 0 || x >= (lanes.groups_per_row() + 1) * lanes.width ? -1 : lanes.node_at(row, x);
+  }
+  KOKKOS_FORCEINLINE_FUNCTION bool is_small(int node) const {
+    return means.small(node / lanes.width) >> (node % lanes.width) & 1;
+  }
+  /// V M_c (column 1), V M_c theta (column 2).
+  KOKKOS_FORCEINLINE_FUNCTION Real sum(int column, int node) const {
+    Real all = 0;
+    for (int plane = 0; plane < (Dim > 1 ? 3 : 1); ++plane)
+      all += *rows.nodes.at(rows.nodes.sums_of_plane(plane) + column, node);
+    return all;
+  }
+  KOKKOS_FORCEINLINE_FUNCTION Real& theta(int node) const {
+    return *rows.nodes.at(rows.nodes.increment_column, node);
+  }
+};
+
+/// The homes of small functions.
+template <int Dim, class Real, class Device>
+struct FindHomes : LaneMeans<Dim, Real, Device> {
+  KOKKOS_FUNCTION void operator()(int place) const {
+    this->for_each(this->means.small, place, [&](const auto& cell, int node) {
+      const int home = this->node_of(this->functions.home_of(cell, [&](const auto& c) {
+        const int there = this->node_of(c);
+        return there < 0 ? Real(0) : this->sum(1, there);
+      }));
+      this->means.home(node) = home;
+      constexpr int width = Lanes<Real>::width;
+      if (home != node)
+        Kokkos::atomic_fetch_or(&this->means.taken(home / width), LaneMask(1) << home % width);
+    });
+  }
+};
+
+/// theta_c of those that take others in.
+template <int Dim, class Real, class Device>
+struct TakeInSmallMeans : LaneMeans<Dim, Real, Device> {
+  KOKKOS_FUNCTION void operator()(int place) const {
+    this->for_each(this->means.taken, place, [&](const auto& cell, int node) {
+      Real volume = this->sum(1, node), divergence = this->sum(2, node);
+      this->functions.for_each_neighbour(cell, [&](const auto& c) {
+        const int there = this->node_of(c);
+        if (there < 0 || !this->is_small(there) || this->means.home(there) != node) return;
+        volume += this->sum(1, there);
+        divergence += this->sum(2, there);
+      });
+      this->theta(node) = divergence / volume;
+    });
+  }
+};
+
+/// theta_c of those that were taken in.
+template <int Dim, class Real, class Device>
+struct GiveBackMeans : LaneMeans<Dim, Real, Device> {
+  KOKKOS_FUNCTION void operator()(int place) const {
+    this->for_each(this->means.small, place,
+                   [&](const auto&, int node) { this->theta(node) = this->theta(this->means.home(node)); });
+  }
+};
+
+}  // namespace kernel
+
+/// Leaves theta_c in nodes.increment_column. `grid` is that of the scene; `small` is memory that fits itself.
+template <class Exec, int Dim, class Real, class Device>
+void average_lane_divergence(const Exec& exec, const LaneState<Dim, Real, Device>& s,
+                             const UniformGrid<Dim, Real>& grid, SmallMeans<Device>& small) {
+  const auto& m = s.memory;
+  const int chunks = m.lanes.node_count / m.lanes.width;
+  if (static_cast<int>(small.small.extent(0)) < chunks) {
+    const auto n = static_cast<size_t>(chunks);
+    small.small = Kokkos::View<LaneMask*, Device>("vsb::small_means", n);
+    small.taken = Kokkos::View<LaneMask*, Device>("vsb::taking_means", n);
+    small.home = Kokkos::View<int*, Device>("vsb::homes_of_means", n * static_cast<size_t>(m.lanes.width));
+  }
+  kernel::LaneMeans<Dim, Real, Device> at{
+      m.lanes, {m.nodes}, {with_ghost_layer(grid), m.walls}, small, m.lanes.lowest_node()};
+  for (int i = 0; i < Dim; ++i) ++at.first[i];  // of the ghost layer
+  Kokkos::parallel_for("vsb::sum_lane_divergence", detail::over_layers(exec, s),
+                       kernel::SumLaneDivergence<Dim, Real, Device>{m.lanes, m.nodes, m.grid, m.walls});
+  Kokkos::parallel_for(
+      "vsb::divide_lane_sums", Kokkos::RangePolicy<Exec>(exec, 0, chunks),
+      kernel::DivideLaneSums<Dim, Real, Device>{{m.nodes}, at.functions.least_volume(), small});
+  const Kokkos::RangePolicy<Exec> places(exec, 0, static_cast<int>(m.lanes.chunk_at.extent(0)));
+  Kokkos::parallel_for("vsb::find_homes_of_means", places, kernel::FindHomes<Dim, Real, Device>{at});
+  Kokkos::parallel_for("vsb::take_in_small_means", places, kernel::TakeInSmallMeans<Dim, Real, Device>{at});
+  Kokkos::parallel_for("vsb::give_back_means", places, kernel::GiveBackMeans<Dim, Real, Device>{at});
+}
+
+}  // namespace vsb

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// The sweeps over dual cell lanes of one MUSL step with quadratic B-splines, a layer each call: A, B, C, and
+/// C with A of the next step, as in kernels/lanes/sweeps.hpp. Which corner of its dual cell a particle is in
+/// says which cell of the scene's grid it is in: C notes where that changes, for Algorithm 1. The mean
+/// divergence, if asked for, takes a sweep of its own before C (kernels/lanes/spline_means.hpp).
+#pragma once
+
+#include <vsb/kernels/lanes/spline_means.hpp>
+#include <vsb/kernels/lanes/spline_tractions.hpp>
+#include <vsb/kernels/lanes/sweeps.hpp>
+
+namespace vsb {
+
+namespace kernel {
+
+/// Sweep A.
+template <class Field, int Dim, class Real, class Device>
+struct SumSplineLanes {
+  LoadedLanes<Dim, Real, Device> on;
+  LaneNodes<Dim, Real, Device> nodes;
+  Field virtual_stress;
+  Kokkos::View<int*, Device> only;  ///< [layer]: 0 for those to leave alone; empty: none
+
+  KOKKOS_FUNCTION void operator()(int layer) const {
+    if (only.size() > 0 && only(layer) == 0) return;
+    SplineStepSums<Dim, Real, Device> sums(on.lanes, nodes, layer);
+    for_each_group(on.lanes, layer, [&](const auto& group, int g) {
+      sums.begin(group, on.lanes.stencils(g));
+      sum_spline_group(on, group, virtual_stress, sums);
+    });
+    sums.end();
+  }
+};
+
+/// Sweep B.
+template <int Dim, class Real, class Device>
+struct AccelerateSplineLanes {
+  using P = typename Lanes<Real>::Pack;
+  using Momentum = SplineLayerSums<1, Dim, Dim, Real, Device>;
+  CellLanes<Dim, Real, Device> lanes;
+  LaneNodes<Dim, Real, Device> nodes;
+
+  KOKKOS_FUNCTION void operator()(int layer) const {
+    Momentum sums(lanes, nodes, layer);
+    for_each_group(lanes, layer, [&](const auto& group, int g) {
+      sums.begin(group, lanes.stencils(g));
+      accelerate(group);
+      add_momentum(group, sums);
+    });
+    sums.end();
+  }
+  /// v_p <- v_p + dt sum_I N_Ip a_I.
+  [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void accelerate(const LaneGroup<Dim>& group) const {
+    const auto& stencil = lanes.stencils(lanes.number_of(group));
+    QuadraticPolynomial<Dim, P> dv[Dim];
+    static_for<Dim>([&](auto i)
+                        VSB_UNROLLED { coefficients_of(nodes, nodes.increment_column + i, stencil, dv[i]); });
+    for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
+      const Powers<Dim, P> xi(lanes.load_xi(entry));
+      static_for<Dim>([&](auto i) VSB_UNROLLED {
+        const P v = lanes.load(lanes.velocity_column + i, entry);
+        lanes.store(lanes.velocity_column + i, entry, v + quadratic_at<Dim>(dv[i], xi));
+      });
+    }
+  }
+  [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void add_momentum(const LaneGroup<Dim>& group,
+                                                                    Momentum& sums) const {
+    spline_sums::mass_and_momentum<false>(lanes, group, sums);
+  }
+};
+
+/// Sweep C for one group.
+template <class Material, class Volume, int Dim, class Real, class Device>
+struct MoveSplineGroup : MoveGroup<false, Material, Volume, Dim, Real, Device> {
+  using Base = MoveGroup<false, Material, Volume, Dim, Real, Device>;
+  using Base::beta;
+  using Base::grid;
+  using Base::lanes;
+  using Base::nodes;
+  using Base::volume;
+  using typename Base::P;
+  Kokkos::View<int*, Device> crossed;  ///< [layer]: 1 where a particle went from corner to corner
+  Walls<Dim> walls;
+
+  /// Where in its cell a particle may be: beyond the middle of the outermost dual cells the grid ends.
+  struct Room {
+    Vector<Dim, P> first, end;
+    KOKKOS_FORCEINLINE_FUNCTION bool holds(const Vector<Dim, P>& xi) const {
+      auto inside = (xi[0] >= first[0]) & (xi[0] < end[0]);
+      static_for<Dim>([&](auto i) VSB_UNROLLED {
+        if constexpr (i > 0) inside = inside & (xi[i] >= first[i]) & (xi[i] < end[i]);
+      });
+      return !any(!inside);
+    }
+  };
+  KOKKOS_FUNCTION Room room_of(const LaneGroup<Dim>& group) const {
+    Room room;
+    for (int i = 0; i < Dim; ++i) {
+      room.first[i] = P(Real(0));
+      room.end[i] = P(Real(1));
+      const int last = grid.cells[i] - 1;
+      // A ghost in the middle does not leave; what is outside by more than round-off, to_next_cell tells.
+      constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
+      for (int l = 0; l < P::width; ++l) {
+        const int cell = lanes.cell(group, l)[i];
+        if (cell == 0) room.first[i].set(l, Real(0.5) - epsilon);
+        if (cell == last) room.end[i].set(l, Real(0.5) + epsilon);
+      }
+    }
+    return room;
+  }
+
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(const LaneGroup<Dim>& group, int layer) const {
+    if (beta > Real(0))
+      move<true>(group, layer);
+    else
+      move<false>(group, layer);
+  }
+  /// averaged: whether the divergence gives way to its mean.
+  template <bool averaged>
+  [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void move(const LaneGroup<Dim>& group, int layer) const {
+    const auto& stencil = lanes.stencils(lanes.number_of(group));
+    QuadraticPolynomial<Dim, P> dx[Dim], u[Dim];
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
+      coefficients_of(nodes, nodes.displacement_column + i, stencil, dx[i]);
+      coefficients_of(nodes, nodes.remapped_column + i, stencil, u[i]);
+    });
+    const Room room = room_of(group);
+    CentreRoom<Dim, P> centres;
+    CellPolynomial<Dim, P> mean;
+    if constexpr (averaged) {
+      centres = centre_room_of(lanes, group, grid, walls);
+      means_around(stencil, mean);
+    }
+    for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
+      const Powers<Dim, P> xi(lanes.load_xi(entry));
+      Matrix<Dim, P> L;  // dt L
+      static_for<Dim>([&](auto i) VSB_UNROLLED {
+        const auto gradient = quadratic_gradient_at<Dim>(u[i], xi);
+        static_for<Dim>([&](auto j) VSB_UNROLLED {
+          L(i, j) = gradient[j] * P(grid.inverse_spacing[j] * grid.spacing[0]);
+        });
+      });
+      if constexpr (averaged)
+        L = with_mean_divergence(L, value_at<Dim>(mean, centres.place(xi.first)), P(beta));
+      this->advance(entry, L);
+      const P V = lanes.load(lanes.volume_column, entry);
+      lanes.store(lanes.volume_column, entry, volume(V, L, P(1)));
+      Vector<Dim, P> moved;
+      static_for<Dim>([&](auto i) VSB_UNROLLED { moved[i] = xi.first[i] + quadratic_at<Dim>(dx[i], xi); });
+      lanes.store_row(lanes.xi_column, entry, moved);
+      note_crossing(layer, entry, xi.first, moved);
+      if (!room.holds(moved)) this->leave(group, layer, entry);
+    }
+  }
+  /// The coefficients of the mean divergence between the centres.
+  KOKKOS_FORCEINLINE_FUNCTION void means_around(const LaneStencil<Dim>& stencil,
+                                                CellPolynomial<Dim, P>& mean) const {
+    static_for<mean.size>([&](auto a) VSB_UNROLLED {
+      mean[a] = nodes.load(nodes.increment_column, stencil.node[centre_row(a >> 1)] + (a & 1));
+    });
+    coefficients_from_nodes<Dim>(mean);
+  }
+  KOKKOS_FORCEINLINE_FUNCTION void note_crossing(int layer, size_t entry, const Vector<Dim, P>& before,
+                                                 const Vector<Dim, P>& after) const {
+    const P half(Real(0.5));
+    auto different = half < half;
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
+      different =
+          different | ((before[i] < half) & (after[i] >= half)) | ((before[i] >= half) & (after[i] < half));
+    });
+    if (any(different) && (bits_of(different) & lanes.held(entry / P::width)) != 0) crossed(layer) = 1;
+  }
+};
+
+/// Sweep C, and A of the next step.
+template <class Field, class Material, class Volume, int Dim, class Real, class Device>
+struct MoveSplineLanes {
+  LoadedLanes<Dim, Real, Device> on;
+  MoveSplineGroup<Material, Volume, Dim, Real, Device> move;
+  Field virtual_stress;
+  bool and_sum;  ///< whether A follows at once
+
+  KOKKOS_FUNCTION void operator()(int layer) const {
+    move.crossed(layer) = 0;
+    const auto move_group = [&](const auto& group) { move(group, layer); };
+    if (!and_sum)
+      return move_layer(on.lanes, move.leavers, layer, false, move_group, [](const auto&, int) {});
+    SplineStepSums<Dim, Real, Device> sums(on.lanes, move.nodes, layer);
+    move_layer(on.lanes, move.leavers, layer, true, move_group, [&](const auto& group, int g) {
+      sums.begin(group, on.lanes.stencils(g));
+      sum_spline_group(on, group, virtual_stress, sums);
+    });
+    sums.end();
+  }
+};
+
+}  // namespace kernel
+
+}  // namespace vsb

@@ -1,0 +1,396 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// The sweeps over cell lanes of one MUSL step, a layer each call:
+///   A  mass, momentum and force of the nodes (kernels/lanes/sums.hpp);
+///   B  v_p <- v_p + dt sum_I N_Ip a_I (FLIP), and the momentum of the re-map, sum_p N_Ip m_p v_p;
+///   C  L = sum_I v*_I (x) grad N_Ip,  sigma <- material(sigma, L dt),  V <- V det(I + dt L) or V exp(dt tr
+///   L),
+///      x_p <- x_p + dt sum_I N_Ip v_I; particles that leave their cell go to the layer's list of leavers;
+///   C and A of the next step in one, while the particles are at hand.
+///
+/// The nodes bring dt a, dt v in cells and dt v* in cells, so that only sums are left for the particles.
+/// Against volumetric locking the divergence of L gives way to its mean over the cell
+/// (physics/mean_divergence.hpp), for which C looks at the volumes first.
+///
+/// With many particles in a cell B does without them. p*_I = p_I + dt sum_J M_IJ a_J, and the consistent mass
+/// matrix M_IJ = sum_p m_p N_Ip N_Jp is summed up by A, cell by cell (physics/cell_mass_matrix.hpp):
+/// RemapLanes adds M dt a to the nodes, and C begins with v_p <- v_p + dt sum_I N_Ip a_I.
+#pragma once
+
+#include <vsb/kernels/lanes/plasticity.hpp>
+#include <vsb/kernels/lanes/tractions.hpp>
+#include <vsb/physics/kinematics.hpp>
+#include <vsb/physics/mean_divergence.hpp>
+#include <vsb/physics/next_cell.hpp>
+
+namespace vsb {
+
+namespace kernel {
+
+/// Calls work(group, number) for the groups of a layer that hold particles, in order.
+template <int Dim, class Real, class Device, class Work>
+KOKKOS_FORCEINLINE_FUNCTION void for_each_group(const CellLanes<Dim, Real, Device>& lanes, int layer,
+                                                const Work& work) {
+  for (int g = lanes.layer_first(layer); g < lanes.layer_first(layer + 1); ++g) {
+    const auto& group = lanes.groups(g);
+    if (group.slots > 0) work(group, g);
+  }
+}
+
+/// Sweep A.
+template <bool Cubic, class Field, int Dim, class Real, class Device>
+struct SumLanes {
+  LoadedLanes<Dim, Real, Device> on;
+  LaneNodes<Dim, Real, Device> nodes;
+  Field virtual_stress;
+  Kokkos::View<int*, Device> only;  ///< [layer]: 0 for those to leave alone; empty: none
+
+  KOKKOS_FUNCTION void operator()(int layer) const {
+    if (only.size() > 0 && only(layer) == 0) return;
+    StepSums<Dim, Real, Device> sums(nodes);
+    sums.begin_anew(on.lanes, layer);
+    for_each_group(on.lanes, layer, [&](const auto& group, int) {
+      sums.begin(group);
+      sum_group_with<Cubic>(on, group, virtual_stress, sums);
+    });
+    sums.end();
+  }
+};
+
+/// v_p <- v_p + dt sum_I N_Ip a_I for the particles of a group.
+template <int Dim, class Real, class Device>
+KOKKOS_FORCEINLINE_FUNCTION void accelerate(const CellLanes<Dim, Real, Device>& lanes,
+                                            const LaneNodes<Dim, Real, Device>& nodes,
+                                            const LaneGroup<Dim>& group) {
+  using P = typename Lanes<Real>::Pack;
+  Vector<(1 << Dim), P> dv[Dim];
+  static_for<Dim>([&](auto i)
+                      VSB_UNROLLED { values_at_corners(nodes, nodes.increment_column + i, group, dv[i]); });
+  for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
+    const CornerFunctions<Dim, P> N(lanes.load_xi(entry));
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
+      const P v = lanes.load(lanes.velocity_column + i, entry);
+      lanes.store(lanes.velocity_column + i, entry, v + N.interpolate(dv[i]));
+    });
+  }
+}
+
+/// Sweep B.
+template <int Dim, class Real, class Device>
+struct AccelerateLanes {
+  using P = typename Lanes<Real>::Pack;
+  using Momentum = LayerSums<1, Dim, Dim, Real, Device>;
+  CellLanes<Dim, Real, Device> lanes;
+  LaneNodes<Dim, Real, Device> nodes;
+
+  KOKKOS_FUNCTION void operator()(int layer) const {
+    Momentum sums(nodes);
+    for_each_group(lanes, layer, [&](const auto& group, int) {
+      sums.begin(group);
+      accelerate_and_sum(group, sums);
+    });
+    sums.end();
+  }
+  [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void accelerate_and_sum(const LaneGroup<Dim>& group,
+                                                                          Momentum& sums) const {
+    accelerate(lanes, nodes, group);
+    CellPolynomial<Dim, P> p[Dim];
+    lane_sums::momentum(lanes, group, p);
+    static_for<Dim>([&](auto i) VSB_UNROLLED { sums.add(1 + i, group, p[i]); });
+  }
+};
+
+/// p*_I = p_I + sum_J M_IJ dt a_J, in place of sweep B.
+template <int Dim, class Real, class Device>
+struct RemapLanes {
+  using P = typename Lanes<Real>::Pack;
+  using Momentum = LayerSums<1, Dim, Dim, Real, Device>;
+  CellLanes<Dim, Real, Device> lanes;
+  LaneNodes<Dim, Real, Device> nodes;
+
+  KOKKOS_FUNCTION void operator()(int layer) const {
+    Momentum sums(nodes);
+    for_each_group(lanes, layer, [&](const auto& group, int g) {
+      sums.begin(group);
+      add_gain(g, group, sums);
+    });
+    sums.end();
+  }
+  [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void add_gain(int g, const LaneGroup<Dim>& group,
+                                                                Momentum& sums) const {
+    CellMassMatrix<Dim, P> M;
+    static_for<M.size>([&](auto k) VSB_UNROLLED { M[k] = P::load(lanes.mass_matrix_at(g, k)); });
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
+      CellPolynomial<Dim, P> dv;
+      values_at_corners(nodes, nodes.increment_column + i, group, dv);
+      sums.add(1 + i, group, times<Dim>(M, dv));
+    });
+  }
+};
+
+/// Sweep C for one group.
+template <bool Cubic, class Material, class Volume, int Dim, class Real, class Device>
+struct MoveGroup {
+  using P = typename Lanes<Real>::Pack;
+  CellLanes<Dim, Real, Device> lanes;
+  LaneNodes<Dim, Real, Device> nodes;
+  UniformGrid<Dim, Real> grid;
+  Material material;
+  Volume volume;
+  Leavers<Dim, Real, Device> leavers;
+  Real beta = 0;  ///< share of the divergence that gives way to a mean (physics/mean_divergence.hpp)
+
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(const LaneGroup<Dim>& group, int layer) const {
+    if (beta > Real(0))
+      move<true>(group, layer);
+    else
+      move<false>(group, layer);
+  }
+  /// averaged: whether the divergence gives way to its mean.
+  template <bool averaged>
+  [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void move(const LaneGroup<Dim>& group, int layer) const {
+    P mean;
+    if constexpr (averaged) mean = mean_divergence(group);
+    Vector<(1 << Dim), P> dx[Dim];
+    CellPolynomial<Dim, P> u[Dim];
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
+      values_at_corners(nodes, nodes.displacement_column + i, group, dx[i]);
+      coefficients_of(nodes, nodes.remapped_column + i, group, u[i]);
+    });
+    for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
+      const auto xi = lanes.load_xi(entry);
+      Matrix<Dim, P> L;  // dt L
+      static_for<Dim>([&](auto i) VSB_UNROLLED {
+        static_for<Dim>([&](auto j) VSB_UNROLLED {
+          L(i, j) = derivative_at<j, Dim>(u[i], xi);
+          if constexpr (!Cubic) L(i, j) *= P(grid.inverse_spacing[j] * grid.spacing[0]);
+        });
+      });
+      if constexpr (averaged) L = with_mean_divergence(L, mean, P(beta));
+      advance(entry, L);
+      const P V = lanes.load(lanes.volume_column, entry);
+      lanes.store(lanes.volume_column, entry, volume(V, L, P(1)));
+      const CornerFunctions<Dim, P> N(xi);
+      Vector<Dim, P> moved;
+      static_for<Dim>([&](auto i) VSB_UNROLLED { moved[i] = xi[i] + N.interpolate(dx[i]); });
+      lanes.store_row(lanes.xi_column, entry, moved);
+      if (!all_off_the_faces(moved)) leave(group, layer, entry);
+    }
+  }
+  /// Whether all are in their cell as off_the_faces leaves them.
+  KOKKOS_FORCEINLINE_FUNCTION static bool all_off_the_faces(const Vector<Dim, P>& xi) {
+    const P lowest(math::epsilon<Real>);
+    auto inside = (xi[0] >= lowest) & (xi[0] < P(1));
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
+      if constexpr (i > 0) inside = inside & (xi[i] >= lowest) & (xi[i] < P(1));
+    });
+    return !any(!inside);
+  }
+
+  /// The mean of dt tr L over every cell, its particles weighted by their volumes.
+  [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION P mean_divergence(const LaneGroup<Dim>& group) const {
+    CellPolynomial<Dim, P> theta;
+    lane_sums::set_zero<Dim>(theta);
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
+      CellPolynomial<Dim, P> u;
+      coefficients_of(nodes, nodes.remapped_column + i, group, u);
+      static_for<(1 << Dim)>([&](auto k) VSB_UNROLLED {
+        if constexpr (k >> i & 1) theta[k ^ (1 << i)] += P(grid.inverse_spacing[i] * grid.spacing[0]) * u[k];
+      });
+    });
+    P V_sum(Real(0)), V_theta(Real(0));
+    for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
+      const P V = lanes.load(lanes.volume_column, entry);
+      V_sum += V;
+      V_theta += V * value_at<Dim>(theta, lanes.load_xi(entry));
+    }
+    return math::select(V_sum > P(Real(0)), V_theta / V_sum, P(Real(0)));
+  }
+
+  KOKKOS_FORCEINLINE_FUNCTION void advance(size_t entry, const Matrix<Dim, P>& L) const {
+    constexpr int remembered = Material::template state_size<Dim>();
+    const auto sigma = lanes.load_stress(entry);
+    if constexpr (remembered == 0) {
+      lanes.store_row(lanes.stress_column, entry, material.advance(sigma, L, P(1)));
+    } else if constexpr (Material::plastic) {
+      advance_plastic_lanes(lanes, material, entry, sigma, L);
+    } else {
+      // Lane by lane: such materials branch.
+      const LaneMask held = lanes.held(entry / P::width);
+      for (int l = 0; l < P::width; ++l) {
+        if (!(held >> l & 1)) continue;  // a ghost may be strained without end
+        Vector<remembered, Real> state;
+        SymmetricTensor<Dim, Real> s;
+        Matrix<Dim, Real> L_l;
+        for (int c = 0; c < remembered; ++c) state[c] = *lanes.at(lanes.state_column + c, entry + l);
+        for (int c = 0; c < s.size; ++c) s[c] = sigma[c][l];
+        for (int i = 0; i < Dim; ++i)
+          for (int j = 0; j < Dim; ++j) L_l(i, j) = L(i, j)[l];
+        s = material.advance(s, state, L_l, Real(1));
+        for (int c = 0; c < remembered; ++c) *lanes.at(lanes.state_column + c, entry + l) = state[c];
+        for (int c = 0; c < s.size; ++c) *lanes.at(lanes.stress_column + c, entry + l) = s[c];
+      }
+    }
+  }
+
+  /// Takes the particles of a slot that left their cell to the layer's list, and those on a face off it.
+  /// Ghosts are carried along, and outside their cell would grow without bound: the slot's are reset.
+  [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void leave(const LaneGroup<Dim>& group, int layer,
+                                                             size_t entry) const {
+    const size_t slot = entry / P::width;
+    const LaneMask held = lanes.held(slot);
+    const int n = leavers.first(layer) + leavers.count(layer);
+    auto& head = leavers.head(n);
+    auto xi = lanes.load_xi(entry);
+    LaneMask below[Dim], above[Dim], leaving = 0;
+    if (next_to_here(group, xi, held, below, above)) {
+      for (int i = 0; i < Dim; ++i) leaving |= below[i] | above[i];
+      for (int l = 0; l < P::width; ++l) {
+        auto cell = lanes.cell(group, l);
+        for (int i = 0; i < Dim; ++i)
+          cell[i] += static_cast<int>(above[i] >> l & 1) - static_cast<int>(below[i] >> l & 1);
+        head.cell[l] = cell;
+      }
+      head.far = 0;
+      head.to[0] = below[Dim - 1];
+      head.to[2] = above[Dim - 1];
+      head.to[1] = leaving & ~head.to[0] & ~head.to[2];
+      if (Dim == 1) {
+        head.to[1] = leaving;
+        head.to[0] = head.to[2] = 0;
+      }
+    } else {
+      leaving = leave_one_by_one(group, xi, held, head);
+    }
+    const LaneMask staying = held & ~leaving;
+    lanes.held(slot) = staying;
+    const auto stays = P::Mask::from_bits(staying);
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
+      if (leaving != 0) xi[i].store(&leavers.data(n, (lanes.xi_column + i) * P::width));
+      lanes.store(lanes.xi_column + i, entry, math::select(stays, xi[i], P(Real(0.5))));
+    });
+    for (int c = Dim; c < lanes.columns(); ++c) {
+      const P value = lanes.load(c, entry);
+      if (leaving != 0) value.store(&leavers.data(n, c * P::width));
+      lanes.store(c, entry, math::select(stays, value, P(Real(0))));
+    }
+    if (leaving == 0) return;
+    head.x = group.x;
+    head.row = group.row;
+    for (int t = 0; t < 3; ++t) head.homeless[t] = 0;
+    for (int l = 0; l < P::width; ++l) {
+      if (!(leaving >> l & 1)) continue;
+      const size_t e = entry + static_cast<size_t>(l);
+      head.id[l] = lanes.id(e);
+      lanes.id(e) = -1;
+      ++leavers.lost(layer);
+    }
+    ++leavers.count(layer);
+  }
+  /// Where all particles of a slot away from the faces of the grid are in their cell or the next one: which
+  /// are below and above along every axis; xi becomes that in the cell where they are.
+  KOKKOS_FORCEINLINE_FUNCTION bool next_to_here(const LaneGroup<Dim>& group, Vector<Dim, P>& xi,
+                                                LaneMask held, LaneMask (&below)[Dim],
+                                                LaneMask (&above)[Dim]) const {
+    const auto first = lanes.cell(group, 0);
+    bool inner = first[0] > 0 && first[0] + P::width < grid.cells[0];
+    for (int i = 1; i < Dim; ++i) inner = inner && first[i] > 0 && first[i] + 1 < grid.cells[i];
+    if (!inner) return false;
+    Vector<Dim, P> there;
+    LaneMask inside = held;
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
+      const auto lower = xi[i] < P(Real(0)), upper = xi[i] >= P(Real(1));
+      there[i] =
+          xi[i] + math::select(lower, P(Real(1)), P(Real(0))) - math::select(upper, P(Real(1)), P(Real(0)));
+      const P lowest(math::epsilon<Real>);
+      there[i] = math::select(there[i] >= lowest, there[i], lowest);
+      below[i] = bits_of(lower) & held;
+      above[i] = bits_of(upper) & held;
+      inside &= bits_of((xi[i] >= P(Real(-1))) & (there[i] < P(Real(1))));
+    });
+    if (inside != held) return false;
+    xi = there;
+    return true;
+  }
+  /// The same in any case, the cells of the particles that left theirs among it; which lanes these are.
+  [[gnu::noinline]] KOKKOS_FUNCTION LaneMask
+  leave_one_by_one(const LaneGroup<Dim>& group, Vector<Dim, P>& xi, LaneMask held,
+                   typename Leavers<Dim, Real, Device>::Head& head) const {
+    LaneMask leaving = 0;
+    head.far = head.to[0] = head.to[1] = head.to[2] = 0;
+    for (int l = 0; l < P::width; ++l) {
+      if (!(held >> l & 1)) continue;
+      const auto before = lanes.cell(group, l);
+      auto cell = before;
+      Vector<Dim, Real> here;
+      for (int i = 0; i < Dim; ++i) here[i] = xi[i][l];
+      const bool leaves = to_next_cell(grid, cell, here, lanes.dual ? Real(0.5) : Real(0));
+      for (int i = 0; i < Dim; ++i) xi[i].set(l, here[i]);
+      if (!leaves) continue;
+      const LaneMask lane = LaneMask(1) << l;
+      const int layers = Dim == 1 ? 0 : cell[Dim - 1] - before[Dim - 1];
+      (layers < -1 || layers > 1 ? head.far : head.to[layers + 1]) |= lane;
+      head.cell[l] = cell;
+      leaving |= lane;
+    }
+    return leaving;
+  }
+};
+
+/// As many particles of a layer as may leave it before its sums are made anew.
+template <int Dim, class Real, class Device>
+KOKKOS_FUNCTION int few_leavers(const CellLanes<Dim, Real, Device>& lanes, int layer) {
+  int slots = 0;
+  for (int g = lanes.layer_first(layer); g < lanes.layer_first(layer + 1); ++g)
+    slots += lanes.groups(g).slots;
+  return slots * lanes.width / 16;
+}
+
+/// Sweep C of a layer, by move(group), and A of the next step, by sum(group, number), if wanted. Where many
+/// particles leave their cells, another sweep after they arrived costs less than to add them to the sums one
+/// by one: a layer that finds so many does not go on with A.
+template <int Dim, class Real, class Device, class Move, class Sum>
+KOKKOS_FORCEINLINE_FUNCTION void move_layer(const CellLanes<Dim, Real, Device>& lanes,
+                                            const Leavers<Dim, Real, Device>& leavers, int layer,
+                                            bool and_sum, const Move& move, const Sum& sum) {
+  auto& lost = leavers.lost(layer);
+  leavers.count(layer) = lost = 0;
+  const int few = and_sum ? few_leavers(lanes, layer) : -1;
+  for_each_group(lanes, layer, [&](const auto& group, int g) {
+    const bool and_sum_group = lost <= few;
+    move(group);
+    if (and_sum_group) sum(group, g);
+  });
+  leavers.many(layer) = lost > few;
+}
+
+/// Sweep C, and A of the next step.
+template <bool Cubic, class Field, class Material, class Volume, int Dim, class Real, class Device>
+struct MoveLanes {
+  LoadedLanes<Dim, Real, Device> on;
+  MoveGroup<Cubic, Material, Volume, Dim, Real, Device> move;
+  Field virtual_stress;
+  bool and_sum;  ///< whether A follows at once
+
+  KOKKOS_FUNCTION void operator()(int layer) const {
+    StepSums<Dim, Real, Device> sums(move.nodes);
+    move_layer(
+        on.lanes, move.leavers, layer, and_sum, [&](const auto& group) { accelerate_and_move(group, layer); },
+        [&](const auto& group, int) {
+          sums.begin(group);
+          sum_group_with<Cubic>(on, group, virtual_stress, sums);
+        });
+    sums.end();
+  }
+  KOKKOS_FORCEINLINE_FUNCTION void accelerate_and_move(const LaneGroup<Dim>& group, int layer) const {
+    if (on.lanes.one_sweep()) accelerate_apart(group);
+    move(group, layer);
+  }
+  [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void accelerate_apart(const LaneGroup<Dim>& group) const {
+    accelerate(on.lanes, move.nodes, group);
+  }
+};
+
+}  // namespace kernel
+
+}  // namespace vsb

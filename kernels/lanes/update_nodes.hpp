@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// \file
+/// The equation of motion at the nodes of cell lanes (see kernels/particles/update_nodes.hpp), a chunk each
+/// call:
+///   first  v_I = p_I / m_I,  f_I <- damped(f_I + m_I g),  dt a_I,  dt (v_I + dt a_I) in cells;
+///   second dt v*_I = dt p*_I / m_I in cells, with the momentum of the re-map.
+/// Components prescribed at a node are zero. Chunks without mass, which a body that moves has before it, are
+/// passed over. The sums are zero afterwards, for what comes next to add to.
+#pragma once
+
+#include <vsb/physics/explicit_dynamics.hpp>
+#include <vsb/views/cell_lanes.hpp>
+
+namespace vsb {
+
+namespace kernel {
+
+/// Planes: node planes to which a layer of cells adds, 3 with dual cells.
+template <int Dim, class Real, class Device, int Planes = 2>
+struct LaneNodeRows {
+  using Nodes = LaneNodes<Dim, Real, Device>;
+  using P = typename Lanes<Real>::Pack;
+  Nodes nodes;
+
+  /// Lower, middle and upper sums together.
+  KOKKOS_FORCEINLINE_FUNCTION P sum(int column, int node) const {
+    const P lower = nodes.load(nodes.lower_sums + column, node);
+    if constexpr (Dim == 1) return lower;
+    const P both = lower + nodes.load(nodes.upper_sums + column, node);
+    return Planes == 2 ? both : both + nodes.load(nodes.middle_sums + column, node);
+  }
+  /// Sets sums to zero; for sums of dual cells the sweeps do so themselves.
+  KOKKOS_FORCEINLINE_FUNCTION void clear(int column, int node) const {
+    if (Planes == 3) return;
+    P(Real(0)).store(nodes.at(nodes.lower_sums + column, node));
+    if (Dim > 1) P(Real(0)).store(nodes.at(nodes.upper_sums + column, node));
+  }
+  /// The sums, which begin with zero again: at no time are they as close at hand.
+  KOKKOS_FORCEINLINE_FUNCTION P take_sum(int column, int node) const {
+    const P s = sum(column, node);
+    clear(column, node);
+    return s;
+  }
+  /// Zero where component i is prescribed.
+  KOKKOS_FORCEINLINE_FUNCTION P free_component(P value, int chunk, int i) const {
+    const auto fixed = nodes.fixed(chunk, i);
+    return fixed == 0 ? value : keep_lanes(~fixed, value);
+  }
+};
+
+template <int Dim, class Real, class Device, int Planes = 2>
+struct UpdateLaneNodes : LaneNodeRows<Dim, Real, Device, Planes> {
+  using Base = LaneNodeRows<Dim, Real, Device, Planes>;
+  using Base::nodes;
+  using typename Base::P;
+  Vector<Dim, Real> gravity;          ///< m/s^2
+  Vector<Dim, Real> inverse_spacing;  ///< 1/m
+  Real damping, dt;
+  bool keep_momentum;  ///< whether the re-map adds to it
+
+  KOKKOS_FUNCTION void operator()(int chunk) const {
+    const int node = chunk * P::width;
+    const P m = this->take_sum(0, node);
+    const auto massive = has_mass(m);
+    if (!any(massive)) return leave_empty(node);
+    const P inverse_mass = math::select(massive, P(Real(1)) / m, P(Real(0)));
+    inverse_mass.store(nodes.at(nodes.inverse_mass_column, node));
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
+      const P v = this->sum(1 + i, node) * inverse_mass;
+      if (!keep_momentum) this->clear(1 + i, node);
+      const P f = this->take_sum(1 + Dim + i, node) + m * P(gravity[i]);
+      const P dv = cundall_damped(f, v, P(damping)) * inverse_mass * P(dt);
+      const P dx = (v + dv) * P(dt * inverse_spacing[i]);
+      this->free_component(dv, chunk, i).store(nodes.at(nodes.increment_column + i, node));
+      this->free_component(dx, chunk, i).store(nodes.at(nodes.displacement_column + i, node));
+    });
+  }
+  /// Where there is no mass, all of this is zero, and was so before but for the first time. There may be a
+  /// force: of particles on the face of their cell.
+  KOKKOS_FUNCTION void leave_empty(int node) const {
+    for (int c = 1; c < nodes.sum_columns; ++c) this->clear(c, node);
+    if (!any(nodes.load(nodes.inverse_mass_column, node) > P(Real(0)))) return;
+    for (int c = nodes.increment_column; c < nodes.column_count; ++c) P(Real(0)).store(nodes.at(c, node));
+  }
+};
+
+template <int Dim, class Real, class Device, int Planes = 2>
+struct RemapLaneNodes : LaneNodeRows<Dim, Real, Device, Planes> {
+  using Base = LaneNodeRows<Dim, Real, Device, Planes>;
+  using Base::nodes;
+  using typename Base::P;
+  Real factor;  ///< dt / h_0
+
+  KOKKOS_FUNCTION void operator()(int chunk) const {
+    const int node = chunk * P::width;
+    const P scale = nodes.load(nodes.inverse_mass_column, node) * P(factor);
+    static_for<Dim>([&](auto i) VSB_UNROLLED {
+      const P p = this->take_sum(1 + i, node);
+      this->free_component(p * scale, chunk, i).store(nodes.at(nodes.remapped_column + i, node));
+    });
+  }
+};
+
+}  // namespace kernel
+
+}  // namespace vsb
