@@ -7,6 +7,12 @@
 namespace vsb::app {
 
 std::unique_ptr<Simulation> make_simulation(const Scene& scene, PlacedParticles* placed) {
+#ifdef VSB_LINEAR_ONLY
+  if (scene.grid.mapped() || scene.single_precision || scene.method.basis != BasisKind::linear)
+    throw SetupError(
+        "this vsb was built with VSB_LINEAR_ONLY: for linear functions on uniform grids in double precision alone");
+  return make_instance<InstanceOf::linear>(scene, placed);
+#else
   if (scene.grid.mapped()) return make_instance<InstanceOf::mapped>(scene, placed);
   if (scene.single_precision) return make_instance<InstanceOf::linear_float>(scene, placed);
   switch (scene.method.basis) {
@@ -17,6 +23,7 @@ std::unique_ptr<Simulation> make_simulation(const Scene& scene, PlacedParticles*
     default:
       return make_instance<InstanceOf::linear>(scene, placed);
   }
+#endif
 }
 
 std::string ByteHash::text() const {

@@ -62,6 +62,22 @@ def include_violations(root):
     return found
 
 
+def without_kokkos(root):
+    """Headers that use Kokkos and reach none of its headers: the precompiled one would hide that."""
+    includes, reaches = {}, {}
+    for path in (path for room in ALLOWED for path in (root / room).rglob("*.hpp")):
+        includes[f"vsb/{path.relative_to(root)}"] = set(re.findall(r"#include <([^>]+)>", path.read_text()))
+
+    def reach(name):
+        if name not in reaches:
+            reaches[name] = name.startswith("Kokkos_")
+            reaches[name] = reaches[name] or any([reach(other) for other in includes.get(name, ())])
+        return reaches[name]
+
+    return [f"{name[4:]}: uses Kokkos and includes none of it" for name in sorted(includes)
+            if re.search(r"\bKokkos::|\bKOKKOS_", (root / name[4:]).read_text()) and not reach(name)]
+
+
 def package_hosts():
     """Hosts that this machine is told to fetch packages from (apt, and the environment's registries)."""
     sources = pathlib.Path("/etc/apt")
@@ -70,6 +86,14 @@ def package_hosts():
     texts += [value for name, value in os.environ.items() if re.search(r"INDEX_URL|REGISTRY|PROXY$", name.upper())]
     hosts = {host for text in texts for host in re.findall(r"://(?:[^/@\s]*@)?([\w.-]+\.[a-zA-Z]\w+)", text)}
     return hosts
+
+
+def unnamed_files(root):
+    """Files of the kernels that the map of their room leaves out."""
+    text = (root / "kernels" / "README.md").read_text()
+    return [f"{path.relative_to(root)}: kernels/README.md has no line for it"
+            for path in sorted((root / "kernels").rglob("*.hpp"))
+            if f"`{path.stem}`" not in text and f"`{path.name}`" not in text]
 
 
 def host_violations(root):
@@ -86,7 +110,7 @@ def host_violations(root):
 
 
 root = pathlib.Path(sys.argv[1])
-violations = include_violations(root) + host_violations(root)
+violations = include_violations(root) + without_kokkos(root) + unnamed_files(root) + host_violations(root)
 for violation in violations:
     print(violation)
 print(f"layers: {len(violations)} violations")
