@@ -10,7 +10,8 @@ std::unique_ptr<Simulation> make_simulation(const Scene& scene, PlacedParticles*
 #ifdef VSB_LINEAR_ONLY
   if (scene.grid.mapped() || scene.single_precision || scene.method.basis != BasisKind::linear)
     throw SetupError(
-        "this vsb was built with VSB_LINEAR_ONLY: for linear functions on uniform grids in double precision alone");
+        "this vsb was built with VSB_LINEAR_ONLY: for linear functions on uniform grids in double precision "
+        "alone");
   return make_instance<InstanceOf::linear>(scene, placed);
 #else
   if (scene.grid.mapped()) return make_instance<InstanceOf::mapped>(scene, placed);
