@@ -2,7 +2,7 @@
 /// \file
 /// Stress fields sbar(x) with their exact divergence fbar = div sbar, one small value type each. A field need
 /// not be in equilibrium: fbar enters the nodal forces as a body force (Eq. 27). How to choose one is told in
-/// physics/README.md.
+/// physics/fields.md.
 #pragma once
 
 #include <vsb/physics/virtual_stress.hpp>

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws the hoop stress over the wall of pressurised rings, one panel per results directory, as physics/README.md shows it.
+"""Draws the hoop stress over the wall of pressurised rings, one panel per results directory, as physics/fields.md shows it.
 
     python3 apps/plot/plot_rings.py ring.png "good choice=results/a" "bad choice=results/b"
 

@@ -89,11 +89,14 @@ def package_hosts():
 
 
 def unnamed_files(root):
-    """Files of the kernels that the map of their room leaves out."""
-    text = (root / "kernels" / "README.md").read_text()
-    return [f"{path.relative_to(root)}: kernels/README.md has no line for it"
-            for path in sorted((root / "kernels").rglob("*.hpp"))
-            if f"`{path.stem}`" not in text and f"`{path.name}`" not in text]
+    """Headers of the kernels and of physics that the map of their room leaves out."""
+    found = []
+    for room in ("kernels", "physics"):
+        text = (root / room / "README.md").read_text()
+        found += [f"{path.relative_to(root)}: {room}/README.md has no line for it"
+                  for path in sorted((root / room).rglob("*.hpp"))
+                  if f"`{path.stem}`" not in text and f"`{path.name}`" not in text]
+    return found
 
 
 def host_violations(root):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The README is true: its commands run, its scene is a scene, its C++ is that of a program that is built and run."""
+"""README and guides are true: commands run, the scene is a scene, the C++ is that of programs that are built and run."""
 import json
 import re
 import subprocess
@@ -8,12 +8,16 @@ import unittest
 from vsb_program import PROGRAM, ROOT, ProgramTest
 
 README = (ROOT / "README.md").read_text()
+SCENES_GUIDE = (ROOT / "apps" / "scenes" / "README.md").read_text()
+EXAMPLES = ROOT / "apps" / "examples"
+DOCUMENTS = [path for path in sorted(ROOT.glob("*.md")) + sorted(ROOT.glob("apps/*/*.md")) + sorted(ROOT.glob("*/*.md"))
+             if path.parent.name not in ("build", "results") and path.name != "CHANGELOG.md"]
 # What this test runs inside of, and what configures the build that it is a part of.
 RUN_ELSEWHERE = ("./demo", "./check", "cmake --preset", "cmake --build", "cmake --install", "cmake -B")
 
 
-def blocks(language):
-    return re.findall(rf"^```{language}\n(.*?)^```", README, re.MULTILINE | re.DOTALL)
+def blocks(language, text=README):
+    return re.findall(rf"^ *```{language}\n(.*?)^ *```", text, re.MULTILINE | re.DOTALL)
 
 
 class Readme(ProgramTest):
@@ -25,7 +29,7 @@ class Readme(ProgramTest):
         self.assertEqual(len(scene), 1)
         (self.folder / "tunnel.toml").write_text(scene[0])
         ran = 0
-        for block in blocks("sh"):
+        for block in blocks("sh") + blocks("sh", SCENES_GUIDE):
             for line in block.splitlines():
                 command = line.split("#")[0].strip()
                 if not command or command.startswith(RUN_ELSEWHERE):
@@ -33,7 +37,7 @@ class Readme(ProgramTest):
                 done = subprocess.run(command, shell=True, cwd=self.folder, capture_output=True, text=True, timeout=600)
                 self.assertEqual(done.returncode, 0, f"{command}\n{done.stdout}{done.stderr}")
                 ran += 1
-        self.assertGreaterEqual(ran, 5)
+        self.assertGreaterEqual(ran, 9)
         results = self.folder / "results" / "tunnel"
         self.assertTrue((results / "tunnel_fields.png").stat().st_size > 10_000)
         # Only the tunnel is loaded: 20 kPa on a quarter of a circle of 1.5 m, pressure times radius in x and in y.
@@ -60,19 +64,28 @@ class Readme(ProgramTest):
             self.assertIn(script, (ROOT / ".ci" / "run").read_text())
         self.assertIn("build_preset openmp", (ROOT / "demo").read_text())
 
-    def test_cpp_is_that_of_the_consumer(self):
-        consumer = {line.strip() for line in (ROOT / "tests" / "consumer" / "consumer.cpp").read_text().splitlines()}
-        code = [line.strip() for block in blocks("cpp") for line in block.splitlines() if line.strip()]
-        self.assertGreaterEqual(len(code), 5)
+    def test_cpp_is_that_of_the_examples(self):
+        sources = list(EXAMPLES.glob("*.cpp")) + list(EXAMPLES.glob("*.hpp"))
+        compiled = {line.strip() for path in sources for line in path.read_text().splitlines()}
+        guide = (EXAMPLES / "README.md").read_text()
+        code = [line.strip() for block in blocks("cpp", guide) for line in block.splitlines() if line.strip()]
+        self.assertGreaterEqual(len(code), 30)
         for line in code:
-            self.assertIn(line, consumer)
-        self.assertTrue(any("vsb::step(Exec(), state, rock, basis, load, options)" in line for line in consumer))
+            self.assertIn(line, compiled)
+        for path in sources:
+            if not path.stem.endswith("_main"):
+                self.assertIn(f"`{path.name}`", guide)
+        self.assertTrue(any("vsb::step(Exec(), state, rock, basis, load, options)" in line for line in compiled))
 
     def test_links_lead_somewhere(self):
-        for target in re.findall(r"\]\(([^)#]+)\)", README):
-            self.assertTrue((ROOT / target).exists(), target)
-        for path in re.findall(r"`((?:apps|tests|kernels|bench|third_party)/[\w./-]+)`", README):
-            self.assertTrue((ROOT / path).exists(), path)
+        self.assertGreaterEqual(len(DOCUMENTS), 7)
+        for document in DOCUMENTS:
+            text = document.read_text()
+            for target in re.findall(r"\]\(([^)#]+)\)", text):
+                if "://" not in target:
+                    self.assertTrue((document.parent / target).exists(), f"{document}: {target}")
+            for path in re.findall(r"`((?:apps|tests|kernels|physics|views|bench|third_party)/[\w./-]+)`", text):
+                self.assertTrue((ROOT / path).exists(), f"{document}: {path}")
 
 
 if __name__ == "__main__":

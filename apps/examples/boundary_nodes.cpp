@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// A shared library of a particle code that has vsb find the boundary nodes of its particles, of which it
-/// gives the positions alone.
+/// A shared library that has vsb find the boundary nodes of particles, of which it takes the positions alone;
+/// boundary_nodes_main.cpp uses it.
 #include <vsb/kernels/boundary/update_occupancy.hpp>
 #include <vsb/physics/linear_basis.hpp>
 
