@@ -21,9 +21,10 @@ std::unique_ptr<Simulation> make_simulation(const Scene& scene, PlacedParticles*
       return make_instance<InstanceOf::ugimp>(scene, placed);
     case BasisKind::quadratic_bspline:
       return make_instance<InstanceOf::quadratic_bspline>(scene, placed);
-    default:
-      return make_instance<InstanceOf::linear>(scene, placed);
+    case BasisKind::linear:
+      break;
   }
+  return make_instance<InstanceOf::linear>(scene, placed);
 #endif
 }
 

@@ -152,7 +152,7 @@ SavedState Checkpoints::read(const std::string& path) {
   if (!obstacle.empty())
     throw FileError(fmt::format(
         "{}: written for another scene: {} (a resumed run may change {}); run without --resume to start anew",
-        path, obstacle, resumable_keys));
+        path, obstacle, resumable_keys()));
   SavedState saved{number(file, path, "checkpoint", "step"),
                    static_cast<size_t>(number(file, path, "checkpoint", "bytes_per_number")),
                    {}};

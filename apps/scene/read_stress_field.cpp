@@ -165,24 +165,32 @@ double largest_stress(const StressFieldSpec& field, const Point& lower, const Po
     for (const double s : stress) most = std::max(most, std::abs(s));
     return most;
   };
-  if (const auto* uniform = std::get_if<Stress6>(&field)) return largest(*uniform);
-  if (const auto* b = std::get_if<RadialBlendSpec>(&field))
-    return std::max(largest(b->inner), largest(b->outer));
-  if (const auto* b = std::get_if<PlanarBlendSpec>(&field))
-    return std::max(largest(b->at_start), largest(b->at_end));
-  if (const auto* e = std::get_if<EllipseSpec>(&field))
-    return std::max({e->pressure, std::abs(e->far_stress), std::abs(e->far_ratio * e->far_stress)});
-  double most = 0;  // at the corners of the box
-  for (unsigned corner = 0; corner < 8; ++corner) {
-    Point x;
-    for (size_t i = 0; i < 3; ++i) x[i] = corner >> i & 1 ? upper[i] : lower[i];
-    if (const auto* affine = std::get_if<Affine<Stress6>>(&field))
-      most = std::max(most, largest(affine->at(x)));
-    if (const auto* h = std::get_if<HydrostaticSpec>(&field))
-      most =
-          std::max(most, h->unit_weight * (h->level - x[0] * h->up[0] - x[1] * h->up[1] - x[2] * h->up[2]));
-  }
-  return most;
+  const auto at_corners = [&](const auto& value_at) {
+    double most = 0;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+      Point x;
+      for (size_t i = 0; i < 3; ++i) x[i] = corner >> i & 1 ? upper[i] : lower[i];
+      most = std::max(most, value_at(x));
+    }
+    return most;
+  };
+  return std::visit(
+      Overloaded{
+          [&](const Stress6& stress) { return largest(stress); },
+          [&](const Affine<Stress6>& affine) {
+            return at_corners([&](const Point& x) { return largest(affine.at(x)); });
+          },
+          [&](const HydrostaticSpec& h) {
+            return at_corners([&](const Point& x) {
+              return h.unit_weight * (h.level - x[0] * h.up[0] - x[1] * h.up[1] - x[2] * h.up[2]);
+            });
+          },
+          [&](const RadialBlendSpec& b) { return std::max(largest(b.inner), largest(b.outer)); },
+          [&](const PlanarBlendSpec& b) { return std::max(largest(b.at_start), largest(b.at_end)); },
+          [](const EllipseSpec& e) {
+            return std::max({e.pressure, std::abs(e.far_stress), std::abs(e.far_ratio * e.far_stress)});
+          }},
+      field);
 }
 
 }  // namespace vsb::app

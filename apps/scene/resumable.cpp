@@ -11,15 +11,13 @@
 
 namespace vsb::app {
 
-const char* const resumable_keys =
-    "title, output, compare, published, static, time.steps, time.until_static and removal.max_stages";
-
 namespace {
 
+constexpr std::array<const char*, 8> keys = {
+    "title",  "output",     "compare",           "published",
+    "static", "time.steps", "time.until_static", "removal.max_stages"};
+
 bool may_change(const std::string& key) {
-  static const std::array<const char*, 8> keys = {
-      "title",  "output",     "compare",           "published",
-      "static", "time.steps", "time.until_static", "removal.max_stages"};
   return std::find(keys.begin(), keys.end(), key) != keys.end();
 }
 
@@ -57,6 +55,10 @@ std::string difference(const std::string& key, const toml::node* before, const t
 }
 
 }  // namespace
+
+std::string resumable_keys() {
+  return fmt::format("{} and {}", fmt::join(keys.begin(), keys.end() - 1, ", "), keys.back());
+}
 
 std::string obstacle_to_resume(const std::string& checkpoint, const std::string& run) {
   try {

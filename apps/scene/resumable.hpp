@@ -8,7 +8,7 @@
 namespace vsb::app {
 
 /// The keys that may change, for messages.
-extern const char* const resumable_keys;
+std::string resumable_keys();
 
 /// The first key that may not change and differs between the resolved scene of a checkpoint and that of the
 /// run to go on, with both values; empty where there is none.

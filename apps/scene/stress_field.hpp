@@ -55,6 +55,14 @@ struct EllipseSpec {
 using StressFieldSpec =
     std::variant<Stress6, Affine<Stress6>, HydrostaticSpec, RadialBlendSpec, PlanarBlendSpec, EllipseSpec>;
 
+/// A function for each alternative of a variant: std::visit does not compile where one is forgotten.
+template <class... Functions>
+struct Overloaded : Functions... {
+  using Functions::operator()...;
+};
+template <class... Functions>
+Overloaded(Functions...) -> Overloaded<Functions...>;
+
 /// The largest stress component that the field has in a box, about; Pa.
 double largest_stress(const StressFieldSpec& field, const Point& lower, const Point& upper);
 

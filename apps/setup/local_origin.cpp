@@ -39,16 +39,27 @@ StressFieldSpec seen_from(const Point& origin, const StressFieldSpec& field) {
     for (size_t i = 0; i < 3; ++i) x[i] -= origin[i];
     return x;
   };
-  auto seen = field;
-  if (auto* affine = std::get_if<Affine<Stress6>>(&seen)) affine->value = affine->at(origin);
-  if (auto* h = std::get_if<HydrostaticSpec>(&seen))
-    for (size_t i = 0; i < 3; ++i) h->level -= origin[i] * h->up[i];
-  if (auto* b = std::get_if<RadialBlendSpec>(&seen)) b->center = local(b->center);
-  if (auto* b = std::get_if<PlanarBlendSpec>(&seen)) {
-    b->start = local(b->start);
-    b->end = local(b->end);
-  }
-  return seen;
+  return std::visit(
+      Overloaded{[](const Stress6& stress) -> StressFieldSpec { return stress; },
+                 [&](Affine<Stress6> affine) -> StressFieldSpec {
+                   affine.value = affine.at(origin);
+                   return affine;
+                 },
+                 [&](HydrostaticSpec h) -> StressFieldSpec {
+                   for (size_t i = 0; i < 3; ++i) h.level -= origin[i] * h.up[i];
+                   return h;
+                 },
+                 [&](RadialBlendSpec b) -> StressFieldSpec {
+                   b.center = local(b.center);
+                   return b;
+                 },
+                 [&](PlanarBlendSpec b) -> StressFieldSpec {
+                   b.start = local(b.start);
+                   b.end = local(b.end);
+                   return b;
+                 },
+                 [](const EllipseSpec& e) -> StressFieldSpec { return e; }},  // local_origin is 0 with it
+      field);
 }
 
 std::string place_text(const Scene& scene, const Point& x, int digits) {
