@@ -87,7 +87,7 @@ struct KeepOutside {
   }
 };
 
-/// E1 and E2, word by word.
+/// E1 and E2, word by word; E2 are the non-void cells that touch E1.
 template <int Dim, class Device>
 struct FindBoundary {
   CellBits<Device> bits;

@@ -4,8 +4,8 @@
 /// those of the original virtual stress boundary method.
 #pragma once
 
-#include <vsb/kernels/lanes/cell_virtual_stress.hpp>
 #include <vsb/kernels/lanes/linear_step.hpp>
+#include <vsb/kernels/lanes/original_virtual_stress.hpp>
 
 namespace vsb {
 

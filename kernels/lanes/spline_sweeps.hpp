@@ -7,7 +7,7 @@
 #pragma once
 
 #include <vsb/kernels/lanes/spline_means.hpp>
-#include <vsb/kernels/lanes/spline_tractions.hpp>
+#include <vsb/kernels/lanes/spline_virtual_stress.hpp>
 #include <vsb/kernels/lanes/sweeps.hpp>
 
 namespace vsb {

@@ -5,8 +5,8 @@
 ///   momentum    sum_p m_p v_p N_a,
 ///   force       sum_p -V_p sigma_p . grad N_a, from the moments sum_p -V_p sigma_p . grad q_k
 ///               (physics/cell_polynomial.hpp);
-/// the virtual stress at loaded nodes is added by kernels/lanes/tractions.hpp. Gravity is left to the nodes:
-/// sum_p N_a m_p g = m_a g.
+/// the virtual stress at loaded nodes is added by kernels/lanes/virtual_stress.hpp. Gravity is left to the
+/// nodes: sum_p N_a m_p g = m_a g.
 ///
 /// Every function is a loop over the slots of a group, with few enough sums to stay in registers.
 #pragma once

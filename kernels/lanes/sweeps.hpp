@@ -18,7 +18,7 @@
 #pragma once
 
 #include <vsb/kernels/lanes/plasticity.hpp>
-#include <vsb/kernels/lanes/tractions.hpp>
+#include <vsb/kernels/lanes/virtual_stress.hpp>
 #include <vsb/physics/kinematics.hpp>
 #include <vsb/physics/mean_divergence.hpp>
 #include <vsb/physics/next_cell.hpp>

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Mass, momentum and force of all nodes: particles, whole cells (the original virtual stress boundary
-/// method) and surface points; what ghost nodes beyond walls get goes to their images.
+/// Mass, momentum and force of all nodes, from
+///   particles, with the virtual stress (Eqs. 27, 28): kernels/particles/particles_to_grid.hpp;
+///   whole cells, of the original method (Eqs. 21, 22): kernels/particles/original_virtual_stress.hpp;
+///   surface points (Eqs. 12, 13): kernels/particles/surface_traction.hpp;
+/// what ghost nodes beyond walls get goes to their images.
 #pragma once
 
 #include <vsb/kernels/boundary/update_occupancy.hpp>
-#include <vsb/kernels/particles/cell_virtual_stress.hpp>
+#include <vsb/kernels/particles/original_virtual_stress.hpp>
 #include <vsb/kernels/particles/particles_to_grid.hpp>
 #include <vsb/kernels/particles/surface_traction.hpp>
 

@@ -12,8 +12,8 @@
 /// A particle stands on a face if it is closer to it than the edge of a cube of its volume; it covers
 /// A_w = V_p / (2 d) at the distance d, as the box around it does. Where particles are other than that, such
 /// as flat ones, or shares of boxes that a surface cuts, the caller knows better (FaceCover). The whole cells
-/// of the original method (kernels/particles/cell_virtual_stress.hpp) close at the faces too. Surface points
-/// give sbar . a each.
+/// of the original method (kernels/particles/original_virtual_stress.hpp) close at the faces too. Surface
+/// points give sbar . a each.
 ///
 /// Reads particles, surface points and the marks of Algorithm 1. Sums have a fixed order.
 #pragma once

@@ -9,7 +9,7 @@
 
 #include <vsb/kernels/lanes/masks.hpp>
 #include <vsb/kernels/lanes/spline_sums.hpp>
-#include <vsb/kernels/lanes/tractions.hpp>
+#include <vsb/kernels/lanes/virtual_stress.hpp>
 
 namespace vsb {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// The original virtual stress boundary method on cell lanes (Eqs. 21, 22; see
-/// kernels/particles/cell_virtual_stress.hpp): at the nodes of N1, and over the cells of E1 and E2 alone,
+/// kernels/particles/original_virtual_stress.hpp): at the nodes of N1, and over the cells of E1 and E2 alone,
 ///   f_I <- f_I + sum_p V_p (sbar . grad N_Ip + N_Ip fbar) - sum_c V_c (sbar_c . grad N_Ic + N_Ic fbar_c).
 /// It comes after the sweeps, which take no notice of these tractions.
 ///
@@ -9,7 +9,7 @@
 #pragma once
 
 #include <vsb/kernels/lanes/mark_nodes.hpp>
-#include <vsb/kernels/lanes/tractions.hpp>
+#include <vsb/kernels/lanes/virtual_stress.hpp>
 #include <vsb/physics/linear_basis.hpp>
 #include <vsb/physics/whole_cell.hpp>
 
