@@ -14,6 +14,8 @@ namespace {
 
 /// The share of a resultant, or of the loaded cells, that counts as lost.
 constexpr double lost_share = 0.1;
+/// Less than this of a resultant is no swing.
+constexpr double swing_share = 0.5;
 
 /// The resultant over the load of a closed surface, or nearly: it may grow as well as shrink by a loss.
 constexpr double closed_share = 0.5;
@@ -145,7 +147,7 @@ void TractionWatch::restore(const std::string& saved) {
   }
 }
 
-std::vector<std::string> TractionWatch::look() {
+std::vector<std::string> TractionWatch::look(bool at_rest) {
   std::vector<std::string> losses;
   if (start_.empty()) return losses;
   const auto now = simulation_.traction_states();
@@ -154,7 +156,7 @@ std::vector<std::string> TractionWatch::look() {
     report.force = now[n].force;
     report.part_cells = now[n].part_cells;
     if (report.lost_at >= 0) continue;
-    report.loss = loss_of(now[n], start_[n]);
+    report.loss = loss_of(now[n], start_[n], at_rest);
     if (report.loss.empty()) continue;
     report.lost_at = simulation_.step();
     losses.push_back(report.loss);
@@ -162,18 +164,18 @@ std::vector<std::string> TractionWatch::look() {
   return losses;
 }
 
-std::string TractionWatch::loss_of(const TractionState& now, const TractionState& start) const {
+std::string TractionWatch::loss_of(const TractionState& now, const TractionState& start, bool at_rest) const {
   const auto& traction = scene_.tractions[start.traction];
   const double before = length(start.force), after = length(now.force);
   const bool closed = before < closed_share * start.load;
-  // Of particles that cross cells, a resultant swings by itself: it is lost where less of the boundary is
-  // loaded.
+  // Of particles that cross cells, a resultant swings by itself: until rest it is lost where less of the
+  // boundary is loaded, or half of it is gone.
   const int cells = now.whole_cells + now.part_cells, cells_before = start.whole_cells + start.part_cells;
   const bool fewer = now.part_cells > start.part_cells || cells < (1 - lost_share) * cells_before;
   std::string what;
   if (cells == 0 && cells_before > 0)
     what = "has no boundary node left and loads nothing";
-  else if (!closed && fewer && after < (1 - lost_share) * before)
+  else if (!closed && (fewer || at_rest || after < swing_share * before) && after < (1 - lost_share) * before)
     what = fmt::format("has lost {:.0f} % of its resultant: at full load ({}) N act, at the start ({}) N did",
                        100 * (1 - after / before), text(now.force, scene_.dimension),
                        text(start.force, scene_.dimension));
@@ -194,6 +196,11 @@ std::string TractionWatch::loss_of(const TractionState& now, const TractionState
     why =
         "; its 'surface' is fixed in space and the boundary moves out of it: with configuration = "
         "\"initial\" it moves with the material";
+  else if (traction.carried && scene_.method.basis == BasisKind::linear)
+    why =
+        "; with linear functions a body tears where it is stretched, and particles that cross cells carry "
+        "the "
+        "load unevenly: take method.basis = \"quadratic_bspline\", or nodes = \"all\"";
   return fmt::format("at step {}, time {:.6g} s: traction '{}' {}{}", simulation_.step(), simulation_.time(),
                      traction.name, what, why);
 }

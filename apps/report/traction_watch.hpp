@@ -32,12 +32,13 @@ class TractionWatch {
   std::string saved() const;
   /// Goes on from there. Throws SetupError where that does not fit this scene.
   void restore(const std::string& saved);
-  /// A sentence for each traction of which a loss is seen for the first time.
-  std::vector<std::string> look();
+  /// A sentence for each traction of which a loss is seen for the first time. at_rest: nothing moves any
+  /// more, so that a resultant tells by itself.
+  std::vector<std::string> look(bool at_rest = false);
   const std::vector<TractionReport>& report() const { return reports_; }
 
  private:
-  std::string loss_of(const TractionState& now, const TractionState& start) const;
+  std::string loss_of(const TractionState& now, const TractionState& start, bool at_rest) const;
 
   const Scene& scene_;
   Simulation& simulation_;

@@ -260,6 +260,7 @@ RunResult run(const Scene& scene, const RunOptions& options) {
       }
     }
     simulation->check_health();
+    if (found_static && !stages) tell(watch.look(true));
     figures.balance = simulation->balance();
   } catch (const Diverged& error) {
     if (!stages || !stages->end_diverged(error.what(), stage_seconds())) throw;

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tractions that particles carry: at large strain by each basis, and where particles are removed; warnings of lost loads."""
+import json
 import re
 import unittest
 
@@ -126,6 +127,38 @@ class RightRuns(ProgramTest):
             self.assertIn(done.returncode, (0, 7), done.stderr)
             self.assertNotIn("warning: at step", done.stderr, scene)
             self.assertNotIn("lost load", done.stdout, scene)
+
+
+# A bar that is pulled with a tenth of its modulus: with linear functions it tears, and its end flies off with the load.
+PULLED = """
+dimension = 1
+grid = { lower = [0.0], upper = [16.0], spacing = 0.25 }
+faces = { x_min = "fixed" }
+[[body]]
+particles_per_cell = 2
+density = 2000.0
+material = { youngs_modulus = 1e7, poisson_ratio = 0.0, law = "hencky" }
+shape.box = { lower = [0.0], upper = [10.0] }
+[[traction]]
+pressure = -1e6
+surface = { box = { lower = [9.5], upper = [10.5] } }
+configuration = "initial"
+time = { ramp = 1.0 }
+[method]
+damping = 0.2
+[time]
+kappa = 0.5
+until_static = { max_steps = 30000 }
+"""
+
+
+class TornBody(ProgramTest):
+    def test_a_load_that_tore_off_is_told(self):
+        done = vsb("run", self.write(PULLED), "--quiet", "--out", self.folder / "torn")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertRegex(done.stderr, r"traction 'traction 1' has lost \d+ % of its resultant.*quadratic_bspline")
+        summary = json.loads((self.folder / "torn" / "summary.json").read_text())
+        self.assertLess(abs(summary["net_force"][0]), 0.5e6)
 
 
 if __name__ == "__main__":
