@@ -210,8 +210,14 @@ std::vector<std::string> resultant_advice(const Scene& scene, Simulation& simula
   for (const auto& state : simulation.traction_states()) {
     Point difference;
     for (size_t i = 0; i < 3; ++i) difference[i] = state.force[i] - state.exact_force[i];
-    if (length(difference) <= unlike_share * state.load) continue;
     const auto& traction = scene.tractions[state.traction];
+    if (state.load == 0 && length(state.force) == 0)
+      advice.push_back(
+          fmt::format("traction '{}' loads nothing: its 'surface' has nodes of cells at the boundary, but no "
+                      "surface of a body "
+                      "lies in it; let it reach a cell beyond the loaded edge on either side",
+                      traction.name));
+    if (length(difference) <= unlike_share * state.load) continue;
     advice.push_back(fmt::format(
         "traction '{}' has the resultant ({}) N at full load, but ({}) N on the bodies' surface where it is "
         "declared: nodes are loaded as a whole, so its 'surface' is to reach a cell beyond the loaded edge, "

@@ -152,6 +152,15 @@ until_static = { max_steps = 30000 }
 """
 
 
+class MissedSurface(ProgramTest):
+    def test_a_region_inside_the_hole_is_told(self):
+        """The boundary nodes of B-splines reach farther than the surface, and where they have no weight load nothing."""
+        done = vsb("check", SCENES / "cylinder-accurate.toml", "--set", "grid.spacing=0.125",
+                   "--set", "traction[0].surface={disc={center=[0.0,0.0],radius=0.7}}")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("loads nothing", done.stderr)
+
+
 class TornBody(ProgramTest):
     def test_a_load_that_tore_off_is_told(self):
         done = vsb("run", self.write(PULLED), "--quiet", "--out", self.folder / "torn")
