@@ -198,9 +198,8 @@ std::string TractionWatch::loss_of(const TractionState& now, const TractionState
         "\"initial\" it moves with the material";
   else if (traction.carried && scene_.method.basis == BasisKind::linear)
     why =
-        "; with linear functions a body tears where it is stretched, and particles that cross cells carry "
-        "the "
-        "load unevenly: take method.basis = \"quadratic_bspline\", or nodes = \"all\"";
+        "; with linear functions a stretched body tears, and particles that cross cells carry the load "
+        "unevenly: take method.basis = \"quadratic_bspline\", or nodes = \"all\"";
   return fmt::format("at step {}, time {:.6g} s: traction '{}' {}{}", simulation_.step(), simulation_.time(),
                      traction.name, what, why);
 }
@@ -212,11 +211,10 @@ std::vector<std::string> resultant_advice(const Scene& scene, Simulation& simula
     for (size_t i = 0; i < 3; ++i) difference[i] = state.force[i] - state.exact_force[i];
     const auto& traction = scene.tractions[state.traction];
     if (state.load == 0 && length(state.force) == 0)
-      advice.push_back(
-          fmt::format("traction '{}' loads nothing: its 'surface' has nodes of cells at the boundary, but no "
-                      "surface of a body "
-                      "lies in it; let it reach a cell beyond the loaded edge on either side",
-                      traction.name));
+      advice.push_back(fmt::format(
+          "traction '{}' loads nothing: its 'surface' has nodes of cells at the boundary, but no "
+          "surface of a body lies in it; let it reach a cell beyond the loaded edge on either side",
+          traction.name));
     if (length(difference) <= unlike_share * state.load) continue;
     advice.push_back(fmt::format(
         "traction '{}' has the resultant ({}) N at full load, but ({}) N on the bodies' surface where it is "
