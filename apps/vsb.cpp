@@ -94,7 +94,7 @@ int run_command(int argc, char** argv) {
   add_scene_options(run);
   run->add_option("--out", options.directory, "Directory of the results (default: results/NAME)")
       ->check(refuse_empty);
-  run->add_flag("--quiet", options.quiet, "Print errors only");
+  run->add_flag("--quiet", options.quiet, "Print warnings and errors only");
   run->add_flag("--resume", options.resume,
                 "Continue from the checkpoint in the results' directory, if there is one");
   run->add_flag("--static", static_solution,

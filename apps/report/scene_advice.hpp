@@ -17,6 +17,9 @@ std::string units_hint(const Scene& scene);
 /// All of a scene's oddities, a sentence each.
 std::vector<std::string> scene_advice(const Scene& scene);
 
+/// On a state at rest whose particles crossed cells on linear functions; largest_displacement: m.
+std::vector<std::string> crossing_advice(const Scene& scene, double largest_displacement);
+
 /// On each traction that is still short of its final value at the last possible step of an explicit run.
 std::vector<std::string> short_run_advice(const Scene& scene);
 

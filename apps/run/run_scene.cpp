@@ -297,6 +297,8 @@ RunResult run(const Scene& scene, const RunOptions& options) {
   if (left && left->all) figures.particles = 0;
   if (left && left->all) figures.mass = 0;
   figures.left_grid = left ? left->what() : "";
+  if (found_static && !stages && !options.progress_only)
+    print_warnings(crossing_advice(scene, figures.state.largest_displacement));
   results.write_summary(summary_json(scene, figures));
   if (left && !left->all)
     throw LeftGrid(fmt::format("{}; the last frame is the state of this step", left->what()), false);

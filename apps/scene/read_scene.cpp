@@ -417,6 +417,15 @@ bool is_loaded(const Scene& scene) {
          std::any_of(scene.bodies.begin(), scene.bodies.end(), begins_loaded);
 }
 
+/// Whether elastic bodies end without any force: the loads that they had are 0 from some time on.
+bool ends_unloaded(const Scene& scene) {
+  const auto elastic = [](const BodySpec& b) { return !is_plastic(b.material.law) && is_zero(b.stress); };
+  const auto ends = [](const TractionSpec& t) { return t.time(t.time.settled_at()) == 0; };
+  return scene.gravity == Point{} && !scene.tractions.empty() &&
+         std::all_of(scene.bodies.begin(), scene.bodies.end(), elastic) &&
+         std::all_of(scene.tractions.begin(), scene.tractions.end(), ends);
+}
+
 /// Whether names of files may have it.
 bool may_be_in_name(unsigned char c) {
   return c > ' ' && c != 127 && c != '/' && c != '\\';
@@ -509,6 +518,10 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
         *document["time"]["until_static"].node(), "time.until_static",
         "nothing loads the bodies (no traction, gravity, initial stress or velocity), so there is no static "
         "state to run to");
+  if (scene.time.until_static && ends_unloaded(scene))
+    r.fail(*document["time"]["until_static"].node(), "time.until_static",
+           "every traction ends at 0, where elastic bodies have no force left by which rest could be judged; "
+           "give time.steps instead");
   scene.static_solution = read_static(r.table("static"));
   scene.removal = read_removal(r, scene);
   refuse_outflow_beside(r, scene);

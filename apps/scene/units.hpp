@@ -11,4 +11,8 @@ constexpr double radians(double degrees) {
   return degrees * (pi / 180);
 }
 
+constexpr double degrees(double radians) {
+  return radians * (180 / pi);
+}
+
 }  // namespace vsb::app
