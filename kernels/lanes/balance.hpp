@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The balance of kernels/readout/balance.hpp for particles in cell lanes, from two sums over the particles
-/// apart from those of the step: without and with virtual stress. The state is left as it is.
+/// The balance of kernels/readout/balance.hpp for particles in cell lanes. It needs the nodal forces
+///   f_I = -sum_p V_p sigma_p . grad N_Ip + m_I g
+/// without and with the virtual stress. Both are summed in memory of their own; the state is not changed.
 #pragma once
 
 #include <vsb/kernels/lanes/resultant.hpp>
@@ -80,9 +81,9 @@ struct LaneStrainEnergy {
 
 }  // namespace kernel
 
-/// The balance of the particles where they are; `virtual_stress` as the sweeps take it, without what loads
-/// the nodes beside them (kernels/lanes/loads.hpp). `modulus`: the material's constrained one, Pa. Waits for
-/// the device.
+/// The balance of the particles at their present positions. `virtual_stress` is the field of the sweeps,
+/// without the loads of kernels/lanes/loads.hpp. `modulus`: the constrained modulus of the material, Pa.
+/// Waits for the device.
 template <class Exec, class Field, int Dim, class Real, class Device>
 Balance<Dim> balance(const Exec& exec, const LaneState<Dim, Real, Device>& s, double modulus,
                      const Field& virtual_stress, const Vector<Dim, Real>& gravity,

@@ -2,8 +2,8 @@
 /// \file
 /// Packs particles by cell (views/cell_lanes.hpp) and unpacks them.
 ///
-/// Within a cell, particles lie by number at first, and later in the order in which they came; both are the
-/// same whatever ran in parallel.
+/// Within a cell, particles are in the order of their numbers at first, and later in the order in which they
+/// arrived. Neither order depends on the number of threads.
 #pragma once
 
 #include <vsb/kernels/lanes/layout.hpp>
@@ -26,7 +26,7 @@ struct CellRange {
   }
 };
 
-/// Who is where in one group, from particles sorted by cell.
+/// The particle numbers of the entries of one group, from particles sorted by cell.
 template <int Dim, class Real, class Device>
 struct PackNumbers {
   CellLanes<Dim, Real, Device> lanes;
@@ -107,7 +107,7 @@ struct UnpackGroup {
 
 namespace detail {
 
-/// Finds groups for the particles, and says who is where; the columns are left to the caller. Returns -1, or
+/// Makes groups for the particles and fills in their numbers. The caller fills the columns. Returns -1, or
 /// the lowest number of a particle outside the grid.
 template <class Exec, int Dim, class Real, class Device>
 int lay_out_particles(const Exec& exec, const Particles<Dim, Real, Device>& particles,
@@ -127,7 +127,7 @@ int lay_out_particles(const Exec& exec, const Particles<Dim, Real, Device>& part
                               kernel::CellRange<Dim, Real, Device>{particles, m.grid, i, sign},
                               Kokkos::Min<int>(found));
       exec.fence();
-      // A reduction over nothing, or over particles outside alone, leaves the largest number there is.
+      // Without particles, or with all of them outside, the minimum is the largest int.
       const int cell = found == std::numeric_limits<int>::max() ? 0 : sign * found;
       (sign > 0 ? lowest : highest)[i] = cell;
     }
@@ -151,7 +151,7 @@ int lay_out_particles(const Exec& exec, const Particles<Dim, Real, Device>& part
   return -1;
 }
 
-/// The numbers that become a column of the lanes.
+/// The field component of the particles that becomes a column of the lanes.
 template <int Dim, class Real, class Device>
 typename Particles<Dim, Real, Device>::Scalars column_of(const Particles<Dim, Real, Device>& particles,
                                                          int column) {
@@ -188,8 +188,9 @@ int pack_particles(const Exec& exec, const Particles<Dim, Real, Device>& particl
   return -1;
 }
 
-/// Particles to be packed where they are: with room for slots that they do not fill and for so many numbers
-/// of material state each, which takes no memory before it is written to. Zero-filled.
+/// Zero-filled particles to be packed in their own memory. It has capacity for the entries of slots that stay
+/// empty, and for `state_size` numbers of material state per particle. On the host, memory that is not
+/// written to is not taken from the system.
 template <int Dim, class Real, class Device>
 ParticleBlock<Dim, Real, Device> allocate_particles_to_pack(int n, int state_size = 0) {
   using Result = ParticleBlock<Dim, Real, Device>;
@@ -204,10 +205,10 @@ ParticleBlock<Dim, Real, Device> allocate_particles_to_pack(int n, int state_siz
   return Result(block, n);
 }
 
-/// The same for particles that are not needed any more: their memory becomes that of the lanes where it has
-/// room for them (allocate_particles_to_pack), so that there are never two copies of all. The block is empty
-/// afterwards, and views of its fields must not be used any more; where a particle lies outside the grid,
-/// nothing is changed.
+/// pack_particles for particles that the caller no longer needs. Their memory becomes that of the lanes where
+/// it is large enough (allocate_particles_to_pack), so that there are never two copies of all particles. The
+/// block is empty afterwards, and views of its fields must not be used any more. Where a particle lies
+/// outside the grid, nothing is changed.
 template <class Exec, int Dim, class Real, class Device>
 int pack_particles(const Exec& exec, ParticleBlock<Dim, Real, Device>&& block,
                    LaneMemory<Dim, Real, Device>& m) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// Ghost nodes of dual cell lanes as mirror images of nodes inside (see physics/walls.hpp and
-/// kernels/particles/mirror_nodes.hpp): what particles give to a ghost goes to its image, and the ghost moves
-/// as its image does. Edges and corners are reflected in all their walls at once.
+/// kernels/particles/mirror_nodes.hpp). The sums of a ghost g are added to those of its image, with the sign
+/// s of a component; the ghost moves as its image does. Edges and corners are reflected in all their walls at
+/// once.
 ///
-/// Gravity comes to the nodes with their mass; at a ghost it is the reflected one, s g, and so an image gets
+/// update_nodes adds gravity to the force of an image by its mass, m g. The part of the mass that came from a
+/// ghost has the reflected gravity s g. So an image gets
 ///   m <- m + m_g,   p <- p + s p_g,   f <- f + s (f_g + m_g g) - m_g g.
 #pragma once
 
@@ -74,7 +76,7 @@ LaneGhosts<Device> list_ghosts(const CellLanes<Dim, Real, Device>& lanes, const 
       bool ghost = false;
       for (int i = 0; i < Dim; ++i) ghost = ghost || image[i] != ijk[i];
       const int to = ghost ? place_of(image) : -1;
-      // A ghost without an image is none that a particle has.
+      // A ghost without an image is not a node of any particle.
       if (to >= 0) pairs.push_back({to, place_of(ijk), turned});
     }
   }
@@ -109,7 +111,7 @@ LaneGhosts<Device> list_ghosts(const CellLanes<Dim, Real, Device>& lanes, const 
 
 namespace kernel {
 
-/// One image: takes what its ghosts were given.
+/// One image: adds the sums of its ghosts.
 template <int Dim, class Real, class Device>
 struct FoldLaneGhosts {
   LaneNodes<Dim, Real, Device> nodes;

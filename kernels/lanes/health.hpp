@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Finds the first particle that a diverging run has spoilt (see kernels/readout/health.hpp) where cell lanes
-/// hold the particles.
+/// Finds the first particle with an invalid field (see kernels/readout/health.hpp), for particles in cell
+/// lanes.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace vsb {
 
 namespace kernel {
 
-/// One group: the lowest number of a spoilt particle, and its field, as one number.
+/// One group: the lowest number of an invalid particle, and its field, as one number.
 template <int Dim, class Real, class Device>
 struct CheckLanes {
   static constexpr std::int64_t fields = 8;
@@ -41,7 +41,7 @@ struct CheckLanes {
 
 }  // namespace kernel
 
-/// The spoilt particle of lowest number. Waits for the device.
+/// The invalid particle of lowest number. Waits for the device.
 template <class Exec, int Dim, class Real, class Device>
 Invalid find_invalid(const Exec& exec, const LaneMemory<Dim, Real, Device>& m) {
   using Check = kernel::CheckLanes<Dim, Real, Device>;

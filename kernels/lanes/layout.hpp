@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Which groups of cells a body needs and which nodes these have: cell lanes without their particles.
+/// The groups of cells that a body needs, and their nodes: cell lanes without their particles.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace vsb {
 
-/// The box that holds cells lowest, ..., highest with a margin of void cells, so that the cells around them
-/// are known (Algorithm 1) and particles can move as far as `reach` says. It may reach over the faces of the
+/// The box of cells lowest, ..., highest with a margin of void cells. Algorithm 1 needs the void cells around
+/// the body; particles can move within `reach` without a new box. The box may extend over the faces of the
 /// grid: groups begin at the lowest cell along x.
 template <int Dim, class Real>
 CellBox<Dim> box_around(const Vector<Dim, int>& lowest, const Vector<Dim, int>& highest,
@@ -47,7 +47,8 @@ struct BoxBasis {
   }
 };
 
-/// How many slots a group needs: the most particles of a cell. One place in the box.
+/// The slots that the cells of a group need: the most particles of a cell. One position of a group in the
+/// box.
 template <int Dim, class Real, class Device>
 struct NeededSlots {
   using Ints = typename CellLanes<Dim, Real, Device>::Ints;
@@ -61,8 +62,8 @@ struct NeededSlots {
   }
 };
 
-/// The most that is needed from `below` places before to `above` places behind along an axis. One place in
-/// the box.
+/// The maximum of the needed slots over the group positions from `below` before to `above` behind along an
+/// axis. One position of a group in the box.
 template <int Dim, class Real, class Device>
 struct NeededAround {
   using Ints = typename CellLanes<Dim, Real, Device>::Ints;
@@ -81,7 +82,7 @@ struct NeededAround {
   }
 };
 
-/// How many slots a group gets.
+/// How many slots the group at a position in the box gets.
 template <int Dim, class Real, class Device>
 struct GroupRoom {
   typename CellLanes<Dim, Real, Device>::Ints needed;    ///< [place]
@@ -102,7 +103,7 @@ struct CountGroups {
   }
 };
 
-/// Lines the groups up, one after the other; a single work item.
+/// Stores the groups one after the other, with their slots; a single work item.
 template <int Dim, class Real, class Device>
 struct PlaceGroups {
   CellLanes<Dim, Real, Device> lanes;
@@ -126,7 +127,7 @@ struct PlaceGroups {
   }
 };
 
-/// Numbers the nodes of the groups, and says where in the box groups and nodes are; a single work item.
+/// Numbers the nodes of the groups, and fills the index of groups and nodes in the box; a single work item.
 template <int Dim, class Real, class Device>
 struct NumberNodes {
   CellLanes<Dim, Real, Device> lanes;
@@ -246,8 +247,8 @@ void number_nodes(const Exec& exec, LaneMemory<Dim, Real, Device>& m) {
                        kernel::FixLaneNodes<Dim, Real, Device>{lanes, m.nodes, last_nodes(m), m.walls});
 }
 
-/// Groups and nodes for a box and the number of particles in each of its cells; the columns and numbers of
-/// the particles are left to the caller.
+/// Makes groups and nodes for a box and the number of particles in each of its cells. The caller fills
+/// columns and numbers of the particles.
 template <class Exec, int Dim, class Real, class Device>
 void number_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const CellBox<Dim>& box,
                   const typename CellLanes<Dim, Real, Device>::Ints& count) {
@@ -269,9 +270,9 @@ void number_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const Cell
           kernel::NeededAround<Dim, Real, Device>{lanes, needed, around, axis, below, above});
       needed = around;
     };
-    // A place lies above those from which it is reached.
+    // Particles that move up by n groups come from n groups below: below and above change roles.
     for (int i = 0; i < Dim; ++i) widen(room.reached, i, m.reach.above[i], m.reach.below[i]);
-    // The edge of a body is thinner than what will come.
+    // Cells at the edge of a body hold fewer particles than the cells behind them that will follow.
     room.expected = room.reached;
     for (int i = 0; i < Dim; ++i) widen(room.expected, i, 1, 1);
   }
@@ -295,13 +296,13 @@ void number_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const Cell
 
 }  // namespace detail
 
-/// What a group has that does not follow from the rest.
+/// The members of a group that do not follow from the others.
 struct GroupShape {
   int x, row, slots, capacity;
 };
 
-/// Lays lanes out as others were; columns and numbers of the particles are left to the caller. False where
-/// that makes no sense, and then nothing is changed.
+/// Lays lanes out with given groups. The caller fills columns and numbers of the particles. Returns false,
+/// and changes nothing, where the groups are not valid.
 template <class Exec, int Dim, class Real, class Device>
 bool lay_out_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const CellBox<Dim>& box,
                    const std::vector<GroupShape>& shape) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// One explicit MUSL step on cell lanes: the same step as in kernels/step.hpp, in the paper's order, with the
-/// particles read and written in two sweeps. What the particles give to the nodes is summed up at the end of
-/// a step for the next one, so the virtual stress goes in a step ahead.
+/// particles read and written in two sweeps. The end of a step computes the nodal sums of the next one:
+///   m_I = sum_p m_p N_Ip,   p_I = sum_p m_p v_p N_Ip,   f_I = -sum_p V_p sigma_p . grad N_Ip,
+/// with the virtual stress. A step therefore takes the virtual stress of the next step.
 #pragma once
 
 #include <vsb/kernels/lanes/mark_nodes.hpp>
@@ -23,7 +24,7 @@ struct LaneState {
   LaneMemory<Dim, Real, Device> memory;
   LaneBoundary<Dim, Device> boundary;
   LaneSurfacePoints<Dim, Real, Device> surface;  ///< none, unless a traction is imposed on points
-  TractionMask original = 0;  ///< tractions of the original method, which sweeps take no notice of
+  TractionMask original = 0;  ///< tractions of the original method, which the sweeps leave out
   int gauss_points = 2;       ///< of these, per direction, 1 to 4
   long long repacked = 0;     ///< times
   int steps_since_repacked = 1000;
@@ -42,7 +43,7 @@ struct LaneState {
 
 namespace kernel {
 
-/// Layers of one set or another.
+/// The union of two sets of layers.
 template <class Device>
 struct JoinLayers {
   Kokkos::View<int*, Device> layers, others;
@@ -125,14 +126,14 @@ void check_loaded(const Exec& exec, State& s) {
   }
 }
 
-/// Notes that sums are made, and what has to come before the step.
+/// Notes that the nodal sums are computed, and whether add_lane_loads must follow.
 template <int Dim, class Real, class Device>
 void note_prepared(LaneState<Dim, Real, Device>& s) {
   s.prepared = true;
   s.loads_due = s.original != 0 || s.surface.count() > 0;
 }
 
-/// The same after a step that lost particle `lost`, or none (-1); returns it.
+/// note_prepared after a step that lost particle `lost`, or none (-1). Returns `lost`.
 template <int Dim, class Real, class Device>
 int note_settled(LaneState<Dim, Real, Device>& s, int lost) {
   note_prepared(s);
@@ -140,7 +141,7 @@ int note_settled(LaneState<Dim, Real, Device>& s, int lost) {
   return lost;
 }
 
-/// Refuses what a step would take without a word and get wrong.
+/// Refuses input that would make a step wrong without any sign of it.
 template <class State, class Material, class Field, int Dim, class Real>
 void check_lane_step(const State& s, const Material& material, const Field& next_virtual_stress,
                      const StepOptions<Dim, Real>& options) {
@@ -203,13 +204,13 @@ void mark_packed_lanes(const Exec& exec, LaneState<Dim, Real, Device>& s) {
 
 namespace detail {
 
-/// Whether cells turned void or filled in a step in which so many particles left theirs.
+/// Whether cells turned void or filled in a step; leavers: the particles that left their cells in it.
 template <class Exec, int Dim, class Real, class Device>
 bool cells_changed(const Exec& exec, const LaneState<Dim, Real, Device>& s, int leavers) {
   return leavers > 0 && update_occupied(exec, s.memory.lanes, s.boundary);
 }
 
-/// Marks the boundary anew where a field acts and cells turned void or filled; whether that was so.
+/// Marks the boundary anew where a field acts and cells turned void or filled. Returns whether it did.
 template <class Field, class Exec, int Dim, class Real, class Device>
 bool bring_marks_up_to_date(const Exec& exec, LaneState<Dim, Real, Device>& s) {
   if (!s.unmarked || !(Field::loaded || s.original != 0)) return false;
@@ -240,7 +241,7 @@ int pack_lanes(const Exec& exec, ParticleBlock<Dim, Real, Device>&& block, LaneS
   return lost;
 }
 
-/// Where groups overflow often, they get slots to spare.
+/// Gives groups spare slots where they overflowed soon after the last packing.
 template <int Dim, class Real, class Device>
 void make_more_room(LaneState<Dim, Real, Device>& s, const HomelessCount& homeless) {
   auto& m = s.memory;
@@ -255,9 +256,10 @@ void make_more_room(LaneState<Dim, Real, Device>& s, const HomelessCount& homele
 
 namespace detail {
 
-/// After the sweeps of a step: brings the leavers to their cells, marks the boundary, and sums up where that
-/// is not done yet (`summed`: by the last sweep). Returns what lane_step does. Other states than LaneState
-/// have their own mark_packed_lanes, cells_changed, bring_marks_up_to_date and sum_lanes.
+/// The end of a step after its sweeps: brings the leavers to their cells, marks the boundary, and computes
+/// the nodal sums that the last sweep did not (`summed`: whether it did any). Returns what lane_step returns.
+/// States other than LaneState have their own mark_packed_lanes, cells_changed, bring_marks_up_to_date and
+/// sum_lanes.
 template <class Exec, class Field, class State>
 int settle_leavers(const Exec& exec, State& s, const Field& next_virtual_stress, bool summed) {
   auto& m = s.memory;
@@ -266,12 +268,12 @@ int settle_leavers(const Exec& exec, State& s, const Field& next_virtual_stress,
   s.steps_of_flow = leavers > m.lanes.particle_count / 50 ? math::min(s.steps_of_flow + 1, 2) : 0;
   int unsummed = 0;  // layers, of leavers.unsummed
   if (leavers > 0) {
-    // Holes cost as much as particles; to close them costs as much as a particle's way.
+    // An empty entry costs as much as a particle in every sweep. To fill it costs as much as one migration.
     const bool closing = s.steps_since_repacked % 8 == 0;
     const auto homeless = take_in_leavers(exec, m, next_virtual_stress, s.boundary.tractions, closing);
     if (homeless.any()) {
       make_more_room(s, homeless);
-      // Where particles flow, there are groups where the body is about to be.
+      // A moving body gets groups of cells ahead of it.
       const int lost = repack_lanes(exec, m, homeless.without_group > 0 && s.steps_since_repacked < 100);
       s.steps_since_repacked = 0;
       if (lost >= 0) return lost;
@@ -297,9 +299,9 @@ int settle_leavers(const Exec& exec, State& s, const Field& next_virtual_stress,
 
 }  // namespace detail
 
-/// Marks the boundary by what is declared and sums up for the first step, or anew after a change of loads or
-/// declarations; `virtual_stress` is the field at the end of the step to come. Where loads act on s.surface
-/// or by s.original, add_lane_loads must follow.
+/// Marks the boundary by what is declared and computes the nodal sums. Required before the first step, and
+/// after a change of loads or declarations. `virtual_stress` is the field at the end of the step to come.
+/// Where loads act on s.surface or by s.original, add_lane_loads must follow.
 template <class Exec, class Field, int Dim, class Real, class Device>
 void prepare_lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Field& virtual_stress) {
   detail::check_packed<Exec>(s);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The cells at the boundary that a traction loads (kernels/readout/loaded_cells.hpp), where cell lanes hold
-/// the particles.
+/// The cells at the boundary that a traction loads (kernels/readout/loaded_cells.hpp), for particles in cell
+/// lanes.
 #pragma once
 
 #include <vsb/kernels/lanes/spline_step.hpp>

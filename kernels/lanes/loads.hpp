@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Loads that the sweeps over cell lanes leave to kernels of their own: tractions on surface points, and
-/// those of the original virtual stress boundary method.
+/// Loads with kernels of their own beside the sweeps over cell lanes: tractions on surface points, and those
+/// of the original virtual stress boundary method.
 #pragma once
 
 #include <vsb/kernels/lanes/linear_step.hpp>
@@ -9,9 +9,9 @@
 
 namespace vsb {
 
-/// Adds the loads of the step to come on s.surface, and those of s.original, to what prepare_lane_step or
-/// lane_step has summed up for it; `virtual_stress` is the field at its end, of all these tractions. Returns
-/// -1, or the lowest number of a surface point outside the grid.
+/// Adds the loads of the step to come on s.surface and those of s.original to the nodal sums of
+/// prepare_lane_step or lane_step. `virtual_stress` is the field of all these tractions at the end of that
+/// step. Returns -1, or the lowest number of a surface point outside the grid.
 template <class Exec, class Field, int Dim, class Real, class Device>
 int add_lane_loads(const Exec& exec, LaneState<Dim, Real, Device>& s, const Field& virtual_stress) {
   if (s.original == 0 && s.surface.count() == 0) return -1;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// Algorithm 1 on cell lanes (see kernels/boundary/mark_boundary_nodes.hpp): from the cells that hold
-/// particles to the tractions of every node and to what a group has to know of them. Words of bits and groups
-/// whose nodes did not change are left alone.
+/// particles to the tractions of every node and to the loads of every group. Words of bits and groups without
+/// a change are skipped.
 #pragma once
 
 #include <vsb/kernels/boundary/mark_boundary_nodes.hpp>
@@ -22,14 +22,14 @@ struct LaneBoundary {
   Kokkos::View<int*, Device> stale;    ///< [layer]: 1 where the load of a group changed with the last marking
   BoundaryNodes<Device> tractions;     ///< [node of the lanes]: those that act there
   TractionMask everywhere = 0;         ///< tractions declared at all nodes
-  /// [node of the grid]: tractions declared at some; may be empty. Read when prepare_lane_step is called:
-  /// whoever changes the array calls it again.
+  /// [node of the grid]: tractions declared at some nodes; may be empty. prepare_lane_step reads it; call
+  /// that again after a change of the array.
   Kokkos::View<const TractionMask*, Device> declared;
   TractionMask conservative = 0;  ///< those that act at all active nodes
-  TractionMask all_declared = 0;  ///< at any node so far; what follows is that of the marks
+  TractionMask all_declared = 0;  ///< declared at any node so far. The members below belong to the marks
   TractionMask marked_everywhere = 0, marked_conservative = 0;
   const TractionMask* marked_declared = nullptr;
-  bool up_to_date = false;  ///< whether the above are of some declarations
+  bool up_to_date = false;  ///< whether the members above belong to declarations
 };
 
 namespace kernel {
@@ -221,7 +221,7 @@ struct CountLoaded {
 
 namespace detail {
 
-/// Whether the marks are those of what is declared, as far as can be told without looking at every node.
+/// Whether the marks belong to what is declared. Does not compare node by node.
 template <int Dim, class Device>
 bool declared_as_marked(const LaneBoundary<Dim, Device>& b) {
   return b.up_to_date && b.everywhere == b.marked_everywhere && b.conservative == b.marked_conservative &&
@@ -233,7 +233,7 @@ void forget_declarations(LaneBoundary<Dim, Device>& b) {
   b.up_to_date = false;
 }
 
-/// Notes what is declared, for marks that are about to be made anew. Waits for the device.
+/// Notes what is declared, before the boundary is marked anew. Waits for the device.
 template <class Exec, int Dim, class Device>
 void take_declarations(const Exec& exec, LaneBoundary<Dim, Device>& b, int grid_nodes) {
   if (declared_as_marked(b)) return;
@@ -288,7 +288,7 @@ void fit_boundary(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes, L
     Kokkos::deep_copy(exec, b.tractions, TractionMask(0));
 }
 
-/// Brings the cells with carriers of tractions up to date; whether there are such tractions.
+/// Brings the cells with carriers of tractions up to date. Returns whether there are such tractions.
 template <class Exec, int Dim, class Real, class Device>
 bool update_carrying(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes,
                      const CarriedTractions<Device>& carried) {
@@ -299,8 +299,8 @@ bool update_carrying(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes
   return true;
 }
 
-/// Brings bits.occupied, and where tractions are carried, up to date; whether that may have changed. Waits
-/// for the device.
+/// Brings bits.occupied and the cells with carried tractions up to date. Returns whether they may have
+/// changed. Waits for the device.
 template <class Exec, int Dim, class Real, class Device>
 bool update_occupied(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes,
                      const LaneBoundary<Dim, Device>& b) {

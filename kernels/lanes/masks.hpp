@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The sets of tractions that nodes of a group of cell lanes have, one after the other.
+/// Loops over the different traction masks of the nodes of a group of cell lanes.
 #pragma once
 
 #include <vsb/views/cell_lanes.hpp>
 
 namespace vsb {
 
-/// Calls work(mask, bits) for every set of tractions that some of the group's nodes have. Node l of row r is
-/// node[r] + l; it is loaded where bit l of loaded[r] is set, and has the set where bit l of bits[r] is.
+/// Calls work(mask, bits) for every traction mask that some of the group's nodes have. Node l of row r is
+/// node[r] + l. Bit l of loaded[r] is set where it is loaded; bit l of bits[r] where it has the mask.
 template <int Dim, int rows, class Tractions, class Work>
 KOKKOS_FORCEINLINE_FUNCTION void for_each_mask(const LaneGroup<Dim>& group, const int (&node)[rows],
                                                const std::uint64_t (&loaded)[rows],

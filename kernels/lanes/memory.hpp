@@ -9,8 +9,8 @@
 
 namespace vsb {
 
-/// How far from particles there are groups too, for those that move there: in groups along x, in rows along
-/// the other axes.
+/// How far beyond the particles there are groups, for particles that will move there: in groups along x, in
+/// rows along the other axes.
 template <int Dim>
 struct Reach {
   Vector<Dim, int> below = Vector<Dim, int>::zero(), above = Vector<Dim, int>::zero();
@@ -21,12 +21,13 @@ struct Reach {
   }
 };
 
-/// How often a step looks at all particles: as their number per cell makes it worth while.
+/// How a step re-maps: by the consistent mass matrix, in one sweep over the particles, or in a second sweep.
+/// chosen: the faster one by the number of particles per cell.
 enum class Sweeps : std::uint8_t { chosen, one, two };
 
-/// Whether one sweep is faster, as measured: the mass matrix is work per cell, what it saves is work per
-/// particle, and in 3D mostly memory traffic, which only counts where the particles do not fit into caches. A
-/// constant, so that a scene has the same bits on machines with other caches.
+/// Whether the re-map by the mass matrix is faster, as measured. The mass matrix costs work per cell; it
+/// saves work per particle. In 3D it saves mostly memory traffic, which counts only where the particles do
+/// not fit into the caches. The cache size is a constant, so that a scene has the same bits on all machines.
 template <int Dim, class Real, class Device>
 bool one_sweep_is_faster(const CellLanes<Dim, Real, Device>& lanes, int cells_with_particles) {
   constexpr int per_cell = CellLanes<Dim, Real, Device>::mass_matrix_size;
@@ -52,7 +53,7 @@ struct LaneMemory {
   Kokkos::View<Real*, Device> column_before;
 };
 
-/// Makes steps take one sweep or two.
+/// Makes steps re-map by the mass matrix (`one` sweep), or in a second sweep.
 template <int Dim, class Real, class Device>
 void set_sweeps(CellLanes<Dim, Real, Device>& lanes, bool one) {
   lanes.mass_matrices =
@@ -73,7 +74,7 @@ View scratch(View& kept, size_t n) {
   return Kokkos::subview(kept, std::make_pair(size_t(0), n));
 }
 
-/// Rows to allocate for some that grow: on the host, rows that are not written to take no memory.
+/// Rows to allocate where their number may grow. On the host, rows that are not written to take no memory.
 template <class Device>
 int with_room(int rows) {
   using Memory = typename Device::memory_space;
@@ -97,7 +98,7 @@ void allocate_numbers(CellLanes<Dim, Real, Device>& lanes, int slots) {
   lanes.held = decltype(lanes.held)("vsb::lanes_held", static_cast<size_t>(slots));
 }
 
-/// Lists with room for all particles of their layers; memory that nobody writes to is not taken.
+/// Allocates the lists of leavers, each with capacity for all particles of its layer.
 template <class Exec, int Dim, class Real, class Device>
 void allocate_leavers(const Exec& exec, LaneMemory<Dim, Real, Device>& m) {
   const auto& lanes = m.lanes;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Brings particles that left their cell to their new one, and adds to the nodes what they give there.
+/// Migration: moves particles that left their cell to the lanes of their new cell, and adds them to the sums
+/// of its nodes, m_I, p_I and f_I of kernels/lanes/sums.hpp.
 ///
-/// The layers a particle can come from are searched in a fixed order, each by the one thread that works on
-/// the layer it goes to: the same order, and the same bits, for any number of threads.
+/// One thread works on the layer to which particles go. It searches the layers from which they can come in a
+/// fixed order, so that the bits are the same for any number of threads.
 #pragma once
 
 #include <vsb/kernels/lanes/build.hpp>
@@ -17,13 +18,13 @@ namespace vsb {
 
 namespace kernel {
 
-/// Lanes of a slot whose particle found no place where it went.
+/// Lanes of a slot whose particle found no group, or no free slot, at its new cell.
 struct Homeless {
   LaneMask without_group, without_slot;
 };
 
-/// One layer: takes in the leavers that go there. Counts those without a place, each once, and layers whose
-/// sums are to be made anew.
+/// One layer: inserts the leavers that go there. Counts those without a group or slot, and the layers whose
+/// sums must be computed anew.
 template <int Dim, class Real, class Device, class Field>
 struct TakeInLeavers {
   static constexpr int width = Lanes<Real>::width;
@@ -35,12 +36,12 @@ struct TakeInLeavers {
   UniformGrid<Dim, Real> grid;
   Field virtual_stress;
   BoundaryNodes<Device> tractions;  ///< [node of the lanes]
-  bool closing;                     ///< whether to close ranks
+  bool closing;                     ///< whether to fill empty entries from the last slots
 
   KOKKOS_FUNCTION int layer_of(const Vector<Dim, int>& cell) const {
     return Dim == 1 ? 0 : cell[Dim - 1] - lanes.box.first[Dim - 1];
   }
-  /// The outermost cells of the box must stay void, or the cells around the body would not be known.
+  /// The outermost cells of the box must stay void: Algorithm 1 needs the void cells around the body.
   KOKKOS_FUNCTION bool within(const Vector<Dim, int>& cell) const {
     for (int i = 0; i < Dim; ++i) {
       const int c = cell[i] - lanes.box.first[i];
@@ -80,7 +81,7 @@ struct TakeInLeavers {
       for (int g = lanes.layer_first(layer); g < lanes.layer_first(layer + 1); ++g)
         close_ranks(lanes.groups(g));
   }
-  /// Empties the last slots into holes of those before, as far as there are any.
+  /// Moves the particles of the last slots into empty entries of the slots before, as long as they fit.
   KOKKOS_FUNCTION void close_ranks(LaneGroup<Dim>& group) const {
     for (; group.slots > 0; --group.slots) {
       const int last = group.first + group.slots - 1;
@@ -106,7 +107,7 @@ struct TakeInLeavers {
       }
     }
   }
-  /// The lanes whose particles go the same way as that of the first.
+  /// The lanes whose particles move by the same offset of cells as that of the first lane.
   KOKKOS_FUNCTION static LaneMask with_the_first(const Head& head, LaneMask lanes) {
     const int first = lowest(lanes);
     LaneMask same = 0;
@@ -123,7 +124,8 @@ struct TakeInLeavers {
     while (!(lanes >> l & 1)) ++l;
     return l;
   }
-  /// Particles of these lanes of copy n, which go the same way; `scatter`: whether to add to the nodes.
+  /// Inserts the particles of some lanes of copy n, which move by the same offset. scatter: whether to add
+  /// them to the nodal sums.
   KOKKOS_FUNCTION void take_in(int n, const Head& head, LaneMask from, bool scatter,
                                Homeless& homeless) const {
     constexpr LaneMask all = ~LaneMask(0) >> (32 - width);
@@ -148,7 +150,7 @@ struct TakeInLeavers {
       homeless.without_group |= from;
     }
   }
-  /// Puts particles of copy n, `Along` lanes on, into lanes of a group.
+  /// Puts particles of copy n into lanes of a group, shifted by `Along` lanes.
   template <int Along>
   KOKKOS_FUNCTION void put(int n, const Head& head, int row, int x, LaneMask into, bool scatter,
                            Homeless& homeless) const {
@@ -165,7 +167,7 @@ struct TakeInLeavers {
       if (fits == 0) continue;
       const size_t entry = static_cast<size_t>(group.first + s) * width;
       const auto mask = P::Mask::from_bits(fits);
-      const bool fresh = s >= group.slots;  // what such a slot holds is old
+      const bool fresh = s >= group.slots;  // the numbers in such a slot are stale
       for (int c = 0; c < lanes.columns(); ++c) {
         const P moved = rotated<Along>(P::load(&leavers.data(n, c * width)));
         const P others = fresh ? P(c < Dim ? Real(0.5) : Real(0)) : lanes.load(c, entry);
@@ -246,16 +248,16 @@ int count_leavers(const Exec& exec, const LaneMemory<Dim, Real, Device>& m) {
   return count;
 }
 
-/// How many particles found no place where they went, for want of a group there, or of a slot in it; and how
-/// many layers are without sums.
+/// How many particles found no group at their new cell, or no free slot in it; and how many layers are
+/// without sums.
 struct HomelessCount {
   int without_group = 0, without_slot = 0, unsummed_layers = 0;
   bool any() const { return without_group + without_slot > 0; }
 };
 
-/// Brings the leavers to their cells, adds them to the nodes where there are not too many of them, and, if
-/// asked to, empties last slots into holes (closing). Where some found no place, repack_lanes must follow.
-/// Waits for the device.
+/// Moves the leavers to the lanes of their new cells. Adds them to the nodal sums, unless there are many:
+/// then the sums of the layer are to be computed anew. closing: fills empty entries from the last slots.
+/// Where particles found no group or slot, repack_lanes must follow. Waits for the device.
 template <class Exec, class Field, int Dim, class Real, class Device>
 HomelessCount take_in_leavers(const Exec& exec, const LaneMemory<Dim, Real, Device>& m,
                               const Field& virtual_stress, const BoundaryNodes<Device>& tractions,

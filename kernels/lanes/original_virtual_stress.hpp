@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The original virtual stress boundary method on cell lanes (Eqs. 21, 22; see
-/// kernels/particles/original_virtual_stress.hpp): at the nodes of N1, and over the cells of E1 and E2 alone,
+/// The original virtual stress boundary method on cell lanes, Eq. (21), Eq. (22) (see
+/// kernels/particles/original_virtual_stress.hpp). At the nodes of N1, with both sums over the cells of E1
+/// and E2 alone,
 ///   f_I <- f_I + sum_p V_p (sbar . grad N_Ip + N_Ip fbar) - sum_c V_c (sbar_c . grad N_Ic + N_Ic fbar_c).
-/// It comes after the sweeps, which take no notice of these tractions.
+/// The sweeps leave these tractions out; this file adds them afterwards.
 ///
 /// Reads particles and the cells and nodes of Algorithm 1; writes the force of the nodes' sums.
 #pragma once
@@ -17,7 +18,7 @@ namespace vsb {
 
 namespace kernel {
 
-/// One layer: what the particles in cells of E2 give.
+/// One layer: adds the sum over the particles in cells of E2.
 template <class Field, int Dim, class Real, class Device>
 struct AddOriginalStress {
   using P = typename Lanes<Real>::Pack;
@@ -65,7 +66,7 @@ struct AddOriginalStress {
   }
 };
 
-/// One row of nodes of the box: what the whole cells around its nodes subtract.
+/// One row of nodes of the box: subtracts the sum over the whole cells around its nodes.
 template <class Field, int Dim, class Real, class Device>
 struct SubtractWholeCells {
   CellLanes<Dim, Real, Device> lanes;
@@ -78,7 +79,7 @@ struct SubtractWholeCells {
   TractionMask original;
   int gauss_points;
 
-  /// What a cell gives to its corners by a uniform field: the same for all cells.
+  /// The forces of a cell at its corners under a uniform field: the same for all cells.
   struct Corners {
     TractionMask tractions = 0;
     Vector<Dim, Real> force[1 << Dim];
@@ -116,7 +117,7 @@ struct SubtractWholeCells {
         cell[i] = ijk[i] - (a >> i & 1);
         in_box[i] = cell[i] - lanes.box.first[i];
       }
-      // No cell outside the grid is one of these, nor one outside the box.
+      // Cells outside the grid and outside the box are not in E1 or E2.
       bool in = true;
       for (int i = 0; i < Dim; ++i) in = in && in_box[i] >= 0 && in_box[i] < box.cells[i];
       if (!in || (bits.boundary(box.row_index(in_box), in_box[0] / 64) >> (in_box[0] % 64) & 1) == 0)
@@ -140,8 +141,8 @@ struct SubtractWholeCells {
 
 }  // namespace kernel
 
-/// Adds the tractions of the original method to the nodes' sums, where there are any; `virtual_stress` has
-/// them. `gauss_points` per direction are for fields that vary.
+/// Adds the tractions of the original method, which are those of `virtual_stress`, to the nodes' sums.
+/// `gauss_points` per direction are used for fields that vary.
 template <class Exec, class Field, int Dim, class Real, class Device>
 void add_cell_virtual_stress(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes,
                              const LaneNodes<Dim, Real, Device>& nodes, const UniformGrid<Dim, Real>& grid,

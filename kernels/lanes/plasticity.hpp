@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// Stress and plastic strain of the particles of one slot of cell lanes over a step, for plastic materials:
-///   sigma_trial = elastic(sigma, L dt) for all lanes at once, and the return to the yield surface lane by
-///   lane, where the trial stress of a lane may lie beyond it.
-/// The plastic strain is written where there is some.
+///   sigma_trial = elastic(sigma, L dt) for all lanes at once;
+///   the return to the yield surface lane by lane, where the trial stress of a lane may lie beyond it.
+/// The plastic strain turns with the material. It is written only where a slot has some.
 #pragma once
 
 #include <vsb/physics/plastic_strain.hpp>
@@ -13,8 +13,8 @@ namespace vsb {
 
 namespace kernel {
 
-/// Returns the stress of some lanes of a slot, which holds their trial stress. A ghost that has been strained
-/// so far begins anew.
+/// Returns the stress of some lanes of a slot, which holds their trial stress, to the yield surface. The
+/// state of a ghost is reset instead.
 template <class Material, int Dim, class Real, class Device>
 [[gnu::noinline]] KOKKOS_FUNCTION void return_lanes(const CellLanes<Dim, Real, Device>& lanes,
                                                     const Material& material, size_t entry,

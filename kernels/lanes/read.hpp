@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Reads single fields of particles that cell lanes hold, by their number, so that whoever wants one need not
-/// unpack them all.
+/// Reads single fields of particles in cell lanes, by particle number, without unpacking all particles.
 #pragma once
 
 #include <vsb/kernels/lanes/build.hpp>
@@ -10,7 +9,7 @@
 
 namespace vsb {
 
-/// Where the particles are.
+/// The entry of every particle, and the group of every slot.
 template <class Device>
 struct LanePlaces {
   Kokkos::View<int*, Device> entry;  ///< [particle]
@@ -44,7 +43,7 @@ struct ReadLaneColumns {
   }
 };
 
-/// Row r: where particle first + r is, m.
+/// Row r: the position of particle first + r, m.
 template <int Dim, class Real, class Device>
 struct ReadLanePositions {
   CellLanes<Dim, Real, Device> lanes;
@@ -132,7 +131,7 @@ LanePlaces<Device> find_places(const Exec& exec, const CellLanes<Dim, Real, Devi
   return places;
 }
 
-/// Particles with nothing but positions and masses, as far as they matter to sums over nodes.
+/// Particles with positions and masses alone, for sums over nodes that need no other field.
 template <class Exec, int Dim, class Real, class Device>
 Particles<Dim, Real, Device> unpack_mass_points(const Exec& exec, const LaneMemory<Dim, Real, Device>& m) {
   const auto n = static_cast<size_t>(m.lanes.particle_count);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Packs all particles of cell lanes anew, where one that left its cell finds no place
+/// Packs all particles of cell lanes anew, where a migrating particle finds no group or slot
 /// (kernels/lanes/migrate.hpp).
 #pragma once
 
@@ -10,7 +10,7 @@ namespace vsb {
 
 namespace kernel {
 
-/// One list: the particles without a place.
+/// One list: the particles without a group or slot.
 template <int Dim, class Real, class Device>
 struct UnpackHomeless {
   Leavers<Dim, Real, Device> leavers;
@@ -40,7 +40,7 @@ struct UnpackHomeless {
   }
 };
 
-/// One group of the lanes before: counts its particles into the cells of the new box.
+/// One group of the old lanes: counts its particles by cell of the new box.
 template <int Dim, class Real, class Device>
 struct CountLanes {
   CellLanes<Dim, Real, Device> before;
@@ -57,8 +57,8 @@ struct CountLanes {
   }
 };
 
-/// Where every entry of the new lanes comes from: an entry of those before (>= 0), a leaver (-2 - n), or
-/// nowhere (-1). One group of those before.
+/// The source of every entry of the new lanes: an entry of the old lanes (>= 0), a leaver (-2 - n), or none
+/// (-1). One group of the old lanes.
 template <int Dim, class Real, class Device>
 struct FindSources {
   CellLanes<Dim, Real, Device> before, lanes;
@@ -85,8 +85,8 @@ struct FindSources {
   }
 };
 
-/// The leavers without a place, list by list; a single work item. First counts them into their cells, then
-/// finds the entries they go to.
+/// The leavers without a group or slot, list by list; a single work item. The first launch counts them by
+/// cell; the second finds their entries.
 template <int Dim, class Real, class Device>
 struct PlaceHomeless {
   FindSources<Dim, Real, Device> find;
@@ -109,8 +109,8 @@ struct PlaceHomeless {
   }
 };
 
-/// The range of cells that hold particles or will hold a homeless leaver, and which way those went that found
-/// no group; a single work item.
+/// The range of cells that hold particles or will hold a homeless leaver, and the directions in which
+/// particles moved that found no group; a single work item.
 template <int Dim, class Real, class Device>
 struct OccupiedRange {
   CellLanes<Dim, Real, Device> lanes;
@@ -166,7 +166,7 @@ struct OccupiedRange {
   }
 };
 
-/// One column of a group of the lanes before: the slots in use, to where they cannot be overwritten.
+/// One column of a group of the old lanes: copies the slots in use, before the new lanes overwrite them.
 template <int Dim, class Real, class Device>
 struct SaveColumn {
   CellLanes<Dim, Real, Device> before;
@@ -199,7 +199,7 @@ struct TakeColumn {
   }
 };
 
-/// One slot of the new lanes: who is in it.
+/// One slot of the new lanes: the numbers of its particles.
 template <int Dim, class Real, class Device>
 struct TakeIds {
   typename CellLanes<Dim, Real, Device>::Ints before;
@@ -222,7 +222,7 @@ struct TakeIds {
 
 }  // namespace kernel
 
-/// Writes back the leavers without a place, which unpack_particles does not know.
+/// Writes the leavers without a group or slot to `particles`; unpack_particles writes all others.
 template <class Exec, int Dim, class Real, class Device>
 void unpack_homeless(const Exec& exec, const LaneMemory<Dim, Real, Device>& m,
                      const Particles<Dim, Real, Device>& particles) {
@@ -231,8 +231,9 @@ void unpack_homeless(const Exec& exec, const LaneMemory<Dim, Real, Device>& m,
       kernel::UnpackHomeless<Dim, Real, Device>{m.leavers, particles, m.grid, m.lanes.state_size});
 }
 
-/// Packs all particles anew, the leavers without a place among them. reach_out: with groups where these went.
-/// Returns -1, or the lowest number of a particle outside the grid, and then nothing is packed.
+/// Packs all particles anew, with the leavers that found no group or slot. reach_out: adds groups in the
+/// directions in which these went. Returns -1, or the lowest number of a particle outside the grid; then
+/// nothing is packed.
 template <class Exec, int Dim, class Real, class Device>
 int repack_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, bool reach_out = false) {
   using Cells = CellLanes<Dim, Real, Device>;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// The resultant of kernels/readout/resultant.hpp for particles in cell lanes, of tractions that the sweeps
-/// take.
+/// apply.
 #pragma once
 
 #include <vsb/kernels/lanes/linear_step.hpp>
@@ -27,8 +27,8 @@ struct LaneParticle {
     for (int a = 0; a < support; ++a) shape.node[a] = group.node[a >> 1] + lane + (a & 1);
     multilinear(xi, grid.inverse_spacing, shape.N, shape.dN);
   }
-  /// The functions on the face of the grid at the end `side` of an axis; false where none of the nodes lie
-  /// there.
+  /// Moves the functions to the face of the grid at the end `side` of an axis. Returns false where none of
+  /// the nodes lie on that face.
   KOKKOS_FUNCTION bool move_to_face(int axis, int side) {
     if (cell[axis] != (side == 0 ? 0 : grid.cells[axis] - 1)) return false;
     auto there = xi;
@@ -72,8 +72,8 @@ struct SplineLaneParticle {
     }
     multiply_triples(f, shape);
   }
-  /// On the face the functions of its nodes are 3/4, those of the nodes beside it 1/8; ghosts have the loads
-  /// of their images.
+  /// On the face the function of a node on it is 3/4, and 1/8 of a node beside it. Ghosts have the loads of
+  /// their images.
   KOKKOS_FUNCTION bool move_to_face(int axis, int side) {
     const int from_middle = (side == 0 ? 0 : grid.cells[axis] - 1) - cell[axis];
     if (from_middle < -1 || from_middle > 1) return false;
@@ -99,8 +99,8 @@ struct SplineLaneParticle {
   KOKKOS_FUNCTION ComponentMask held(int, int axis, int side) const { return walls.fixed[axis][side]; }
 };
 
-/// One group: its particles, one by one; groups without loaded nodes give nothing. Particle: as above, with
-/// `source` in it.
+/// One group: its particles, one by one. Groups without loaded nodes are skipped. Particle: one of the two
+/// types above, with `source` in it.
 template <class Particle, class Source, class Field, int Dim, class Real, class Device>
 struct LaneResultant {
   CellLanes<Dim, Real, Device> lanes;
@@ -163,7 +163,8 @@ TractionResultant<Dim> lane_resultant(const Exec& exec, const LaneState<Dim, Rea
 
 }  // namespace detail
 
-/// The resultant of the tractions in `among` on the particles where they are. Waits for the device.
+/// The resultant of the tractions in `among` on the particles at their present positions. Waits for the
+/// device.
 template <class Exec, class Field, int Dim, class Real, class Device>
 TractionResultant<Dim> resultant(const Exec& exec, const LaneState<Dim, Real, Device>& s,
                                  const Field& virtual_stress, TractionMask among = ~TractionMask(0),

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Between the nodes of a group of cell lanes and polynomials on its cells, one cell per lane: gathering
-/// nodal fields, and adding moments to the sums of a layer.
+/// Gather and scatter between the nodes of a group of cell lanes and polynomials on its cells, one cell per
+/// lane. A nodal field f(x) = sum_I N_I(x) f_I becomes coefficients of the monomials q_k. The moments
+/// sum_p w_p q_k(xi_p) become the sums sum_p w_p N_I(x_p), which are added to those of a layer.
 #pragma once
 
 #include <vsb/physics/cell_polynomial.hpp>
@@ -28,8 +29,8 @@ KOKKOS_FORCEINLINE_FUNCTION void coefficients_of(const LaneNodes<Dim, Real, Devi
 }
 
 /// The sums of one layer: columns First, ..., First + Count - 1 of LaneNodes' lower and upper sums. The right
-/// node of a cell is the left one of the next: what the last lane gives to its right is carried along to the
-/// next group of a run, and set down at the run's end.
+/// node of the last lane is the left node of the next group of a run. Its sum is kept for that group, and
+/// written at the end of the run.
 template <int First, int Count, int Dim, class Real, class Device>
 class LayerSums {
   using P = typename Lanes<Real>::Pack;
@@ -57,7 +58,7 @@ class LayerSums {
     next_x_ = group.x + 1;
     for (int r = 0; r < rows; ++r) next_node_[r] = group.node[r] + P::width;
   }
-  /// Adds what the moments of the present group come to at the nodes; they are turned in place.
+  /// Adds the nodal sums of the moments of the present group; overwrites the moments with them.
   KOKKOS_FORCEINLINE_FUNCTION void add_moments(int column, const LaneGroup<Dim>& group,
                                                CellPolynomial<Dim, P>& m) {
     nodes_from_moments<Dim>(m);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Algorithm 1 on dual cell lanes, for quadratic B-splines: the void cells are those of the scene's grid, of
-/// which a dual cell covers a corner each of 2^Dim; nodes beyond those of such cells belong to N1, and ghost
-/// nodes are marked as their images are (see kernels/boundary/mark_boundary_nodes.hpp).
+/// Algorithm 1 on dual cell lanes, for quadratic B-splines (see kernels/boundary/mark_boundary_nodes.hpp).
+/// Void cells are cells of the scene's grid. A dual cell overlaps 2^Dim of them, each by one corner. N1 has
+/// one ring of nodes more than the nodes of E1 and E2. Ghost nodes are marked as their images are.
 #pragma once
 
 #include <vsb/kernels/lanes/ghosts.hpp>
@@ -78,8 +78,8 @@ struct OccupyDualLanes {
   }
 };
 
-/// One row of nodes: counts those of which `mark` says that a traction acts there, whether or not the lanes
-/// keep them: nodes of cells with particles that none of these has are active too.
+/// One row of nodes: counts those at which a traction acts by `mark`, also those that the lanes do not store.
+/// Nodes of cells with particles are active even where no particle has them among its nodes.
 template <int Dim, class Real, class Device>
 struct CountMarkedNodes {
   MarkLaneNodes<1, Dim, Real, Device> mark;
@@ -99,7 +99,7 @@ struct CountMarkedNodes {
 }  // namespace kernel
 
 /// The cells of the scene's grid around the box, as rows of bits; `last` is the grid's last node. Beyond an
-/// open face there is one more layer of cells, as the particle kernels have it.
+/// open face there is one more layer of cells, as for the particle kernels.
 template <int Dim, class Real, class Device>
 BitRows<Dim> dual_tiling(const CellLanes<Dim, Real, Device>& lanes, const Vector<Dim, int>& last,
                          const Walls<Dim>& walls) {
@@ -114,8 +114,8 @@ BitRows<Dim> dual_tiling(const CellLanes<Dim, Real, Device>& lanes, const Vector
   return tiling;
 }
 
-/// Brings bits.occupied, and where tractions are carried, up to date; whether that may have changed. Waits
-/// for the device.
+/// Brings bits.occupied and the cells with carried tractions up to date. Returns whether they may have
+/// changed. Waits for the device.
 template <class Exec, int Dim, class Real, class Device>
 bool update_dual_occupied(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes,
                           LaneCorners<Device>& corners, const LaneBoundary<Dim, Device>& b) {
@@ -139,7 +139,7 @@ Vector<Dim, int> with_ghost_cells(Vector<Dim, int> cells) {
   return cells;
 }
 
-/// From bits.occupied to the loads of nodes and groups, as mark_lanes does.
+/// From bits.occupied to the loads of nodes and groups; see mark_lanes.
 template <class Exec, int Dim, class Real, class Device>
 void mark_dual_lanes(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes,
                      const Vector<Dim, int>& last, const Walls<Dim>& walls, const LaneGhosts<Device>& ghosts,

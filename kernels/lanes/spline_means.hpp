@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The mean divergence on dual cell lanes (physics/mean_divergence.hpp), between the re-map and sweep C: the
-/// functions M_c, multilinear around the centres of the scene's cells, have the centres as corners of the
-/// dual cells, so that a particle has always the same 2^Dim of them.
+/// The mean divergence on dual cell lanes (physics/mean_divergence.hpp), between the re-map and sweep C:
+///   theta_c = sum_p V_p M_c(x_p) theta_p / sum_p V_p M_c(x_p),   theta_p = dt tr L_p.
+/// The functions M_c are multilinear around the centres c of the scene's cells. These centres are the corners
+/// of the dual cells, so that a particle always has the same 2^Dim functions.
 ///
-/// A centre is kept where the lowest node of its cell is. The sums of V M_c and V M_c theta take the place of
-/// momentum sums, which are used up by then, and the means that of the increment dt a, likewise.
+/// The values of centre c are stored at the lowest node of its cell: the sums of V M_c and V M_c theta in the
+/// columns of the momentum, and the means theta_c in those of the increment dt a. Both are free between the
+/// re-map and the next sums.
 #pragma once
 
 #include <vsb/kernels/lanes/linear_step.hpp>
@@ -13,8 +15,8 @@
 
 namespace vsb {
 
-/// Where in its dual cell a particle finds the functions of the centres around, per lane: at xi, but for
-/// lanes beside a wall, where the function inside is constant.
+/// The range of xi in which the functions M_c of a dual cell vary, per lane. Beside a wall the function of
+/// the centre inside is constant.
 template <int Dim, class P>
 struct CentreRoom {
   Vector<Dim, P> least, most;
@@ -47,7 +49,7 @@ KOKKOS_FUNCTION CentreRoom<Dim, typename Lanes<Real>::Pack> centre_room_of(
   return room;
 }
 
-/// The row of a stencil in which the centres at corners 2 r and 2 r + 1 of a dual cell are kept.
+/// The row of a stencil that stores the centres at corners 2 r and 2 r + 1 of a dual cell.
 constexpr int centre_row(int r) {
   return (r >> 1) * 3 + (r & 1);
 }
@@ -133,16 +135,16 @@ struct SumLaneDivergence {
 
 }  // namespace kernel
 
-/// Where functions are small, and where they go.
+/// Which functions are small, and which they merge into.
 template <class Device>
 struct SmallMeans {
-  Kokkos::View<LaneMask*, Device> small, taken;  ///< [chunk]: those that are, those that take others in
-  Kokkos::View<int*, Device> home;               ///< [node]: of a small function, the node that takes it in
+  Kokkos::View<LaneMask*, Device> small, taken;  ///< [chunk]: small functions; those that others merge into
+  Kokkos::View<int*, Device> home;               ///< [node]: of a small function, the node it merges into
 };
 
 namespace kernel {
 
-/// theta_c of a chunk, as if no function were small; notes those that are.
+/// theta_c of a chunk without merging; marks the small functions.
 template <int Dim, class Real, class Device>
 struct DivideLaneSums : LaneNodeRows<Dim, Real, Device, 3> {
   using Base = LaneNodeRows<Dim, Real, Device, 3>;
@@ -161,7 +163,7 @@ struct DivideLaneSums : LaneNodeRows<Dim, Real, Device, 3> {
   }
 };
 
-/// What the functions at the nodes of a chunk need to find those around them.
+/// The functions at the nodes of a chunk, and access to their neighbours.
 template <int Dim, class Real, class Device>
 struct LaneMeans {
   CellLanes<Dim, Real, Device> lanes;
@@ -213,7 +215,7 @@ struct LaneMeans {
   }
 };
 
-/// The homes of small functions.
+/// Finds the function that each small function merges into.
 template <int Dim, class Real, class Device>
 struct FindHomes : LaneMeans<Dim, Real, Device> {
   KOKKOS_FUNCTION void operator()(int place) const {
@@ -230,7 +232,7 @@ struct FindHomes : LaneMeans<Dim, Real, Device> {
   }
 };
 
-/// theta_c of those that take others in.
+/// theta_c of the functions that small ones merge into: the mean over all of them.
 template <int Dim, class Real, class Device>
 struct TakeInSmallMeans : LaneMeans<Dim, Real, Device> {
   KOKKOS_FUNCTION void operator()(int place) const {
@@ -247,7 +249,7 @@ struct TakeInSmallMeans : LaneMeans<Dim, Real, Device> {
   }
 };
 
-/// theta_c of those that were taken in.
+/// theta_c of small functions: that of the function they merge into.
 template <int Dim, class Real, class Device>
 struct GiveBackMeans : LaneMeans<Dim, Real, Device> {
   KOKKOS_FUNCTION void operator()(int place) const {
@@ -258,7 +260,8 @@ struct GiveBackMeans : LaneMeans<Dim, Real, Device> {
 
 }  // namespace kernel
 
-/// Leaves theta_c in nodes.increment_column. `grid` is that of the scene; `small` is memory that fits itself.
+/// Writes theta_c to nodes.increment_column. `grid` is the scene's grid; `small` is memory that grows as
+/// needed.
 template <class Exec, int Dim, class Real, class Device>
 void average_lane_divergence(const Exec& exec, const LaneState<Dim, Real, Device>& s,
                              const UniformGrid<Dim, Real>& grid, SmallMeans<Device>& small) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Between the nodes of a group of dual cell lanes and quadratic polynomials on its cells, one cell per lane:
-/// gathering nodal fields, and adding to the sums of a layer (see kernels/lanes/scatter.hpp).
+/// Gather and scatter between the nodes of a group of dual cell lanes and quadratic polynomials on its cells,
+/// one cell per lane (see kernels/lanes/scatter.hpp).
 #pragma once
 
 #include <vsb/physics/quadratic_polynomial.hpp>
@@ -21,8 +21,8 @@ KOKKOS_FORCEINLINE_FUNCTION void coefficients_of(const LaneNodes<Dim, Real, Devi
 }
 
 /// The sums of one layer: columns First, ..., First + Count - 1 of the sums of its three node planes (one
-/// plane in 1D). The last lane gives to two nodes beyond its own: these wait for the next group of a run, and
-/// are set down at the run's end.
+/// plane in 1D). The last lane adds to two nodes beyond its own. Their sums are kept for the next group of a
+/// run, and written at the end of the run.
 template <int First, int Count, int Dim, class Real, class Device>
 class SplineLayerSums {
   using P = typename Lanes<Real>::Pack;
@@ -32,7 +32,7 @@ class SplineLayerSums {
   KOKKOS_FUNCTION SplineLayerSums(const CellLanes<Dim, Real, Device>& lanes,
                                   const LaneNodes<Dim, Real, Device>& nodes, int layer)
       : nodes_(nodes) {
-    // Also of layers without groups: what ghost nodes give to their images may go to any of a plane's sums.
+    // Layers without groups too: the sums of ghost nodes may be added to any of the sums of their images.
     // The outermost planes of the box have no nodes.
     const int planes = Dim == 1 ? 1 : math::min(3, lanes.layers() + 1 - layer);
     for (int c = First; c < First + Count; ++c)

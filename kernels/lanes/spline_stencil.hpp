@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// What a single particle of dual cell lanes gives to its nodes: the quadratic B-splines at its place, and
-/// the sums of the layer that it goes to.
+/// Scatter of a single particle of dual cell lanes to its nodes: the quadratic B-splines N_I(x_p) at its
+/// position, and the sums of the layer to which they are added.
 #pragma once
 
 #include <vsb/physics/quadratic_bspline_basis.hpp>

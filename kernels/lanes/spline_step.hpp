@@ -3,8 +3,8 @@
 /// One explicit MUSL step on cell lanes with quadratic B-splines, as kernels/lanes/linear_step.hpp makes it
 /// with linear functions: two sweeps, and tractions of the (modified) virtual stress boundary method alone.
 ///
-/// Lanes hold dual cells, the points nearest to a node of the scene's grid, in which a particle has always
-/// the same 3^Dim nodes. Nodes beyond a wall are mirror images (physics/walls.hpp).
+/// A lane holds a dual cell: the points nearest to one node of the scene's grid. All particles of a dual cell
+/// have the same 3^Dim nodes. Nodes beyond a wall are mirror images (physics/walls.hpp).
 #pragma once
 
 #include <vsb/kernels/lanes/linear_step.hpp>
@@ -24,7 +24,7 @@ UniformGrid<Dim, Real> dual_grid(const UniformGrid<Dim, Real>& grid) {
   return dual;
 }
 
-/// What a step works on. In what it has of LaneState, memory.grid is the dual grid, and boundary.declared is
+/// What a step works on. Unlike in LaneState, memory.grid is the dual grid, and boundary.declared is
 /// [node of the grid with its ghost layer].
 template <int Dim, class Real, class Device>
 struct SplineLaneState : LaneState<Dim, Real, Device> {
@@ -67,7 +67,7 @@ bool cells_changed(const Exec& exec, SplineLaneState<Dim, Real, Device>& s, int 
   return update_dual_occupied(exec, s.memory.lanes, s.corners, s.boundary);
 }
 
-/// Marks the boundary anew where a field acts and such cells changed; whether that was so.
+/// Marks the boundary anew where a field acts and cells of the scene's grid changed. Returns whether it did.
 template <class Field, class Exec, int Dim, class Real, class Device>
 bool bring_marks_up_to_date(const Exec& exec, SplineLaneState<Dim, Real, Device>& s) {
   if (!s.unmarked || !Field::loaded) return false;
@@ -130,7 +130,7 @@ int count_loaded_nodes(const Exec& exec, const SplineLaneState<Dim, Real, Device
   return count_marked_nodes(exec, s.memory.lanes, s.grid.cells, s.memory.walls, s.boundary);
 }
 
-/// As with linear functions.
+/// prepare_lane_step with quadratic B-splines.
 template <class Exec, class Field, int Dim, class Real, class Device>
 void prepare_lane_step(const Exec& exec, SplineLaneState<Dim, Real, Device>& s, const Field& virtual_stress) {
   detail::check_packed<Exec>(s);

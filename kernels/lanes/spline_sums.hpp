@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// What the particles of a group of dual cell lanes give to its nodes (Eqs. 10, 11, 27, 28) with quadratic
-/// B-splines (physics/quadratic_polynomial.hpp):
-///   mass        sum_p m_p N_a,
-///   momentum    sum_p m_p v_p N_a,
-///   force       sum_p -V_p sigma_p . grad N_a, from the moments of the stress, sum_p -V_p sigma_p q_k.
-/// Gravity is left to the nodes.
+/// The sums over the particles p of a group of dual cell lanes at its nodes I with quadratic B-splines,
+/// Eq. (10), Eq. (11):
+///   mass        m_I = sum_p m_p N_I(x_p),
+///   momentum    p_I = sum_p m_p v_p N_I(x_p),
+///   force       f_I = -sum_p V_p sigma_p . grad N_I(x_p).
+/// Mass and momentum are summed with the basis functions N_I themselves. The force is summed as moments of
+/// the stress with the monomials q_k of a cell, -sum_p V_p sigma_p q_k(xi_p); the derivative of a monomial is
+/// a monomial, so that sums of these moments are f_I (physics/quadratic_polynomial.hpp).
 ///
-/// In 3D every sum is a loop of its own over the slots of a group, so that its 27 numbers stay in registers;
-/// what the loops have in common, the products of the functions, is prepared for some slots at a time.
+/// kernels/lanes/spline_virtual_stress.hpp adds the virtual stress at loaded nodes, Eq. (27), Eq. (28).
+/// kernels/lanes/update_nodes.hpp adds gravity: sum_p m_p g N_I(x_p) = m_I g.
+///
+/// In 3D every sum is a loop of its own over the slots of a group, so that its 27 numbers stay in registers.
+/// All loops need the same products of basis functions: these are computed once, for some slots at a time.
 #pragma once
 
 #include <vsb/kernels/lanes/spline_scatter.hpp>
@@ -16,7 +21,7 @@
 
 namespace vsb {
 
-/// The sums of all three, a layer's worth.
+/// The sums of mass, momentum and force of a layer.
 template <int Dim, class Real, class Device>
 using SplineStepSums = SplineLayerSums<0, LaneNodes<Dim, Real, Device>::sum_columns, Dim, Real, Device>;
 
@@ -49,7 +54,8 @@ KOKKOS_FORCEINLINE_FUNCTION void for_each_block(const CellLanes<Dim, Real, Devic
 }
 
 /// sum[n] = (anew) or += sum over slots of weight(n, entry) times their products, by add(n, sum, weight,
-/// product); n is a compile-time constant. As many sums at a time as stay in registers.
+/// product); n is a compile-time constant. One pass over the slots computes as many sums as stay in
+/// registers.
 template <int Count, int Dim, class P, class Anew, class Weight, class Add>
 KOKKOS_FORCEINLINE_FUNCTION void accumulate(QuadraticPolynomial<Dim, P> (&sum)[Count], Anew, size_t entry,
                                             int count, const TensorProduct<Dim, P>* products,
@@ -116,13 +122,15 @@ constexpr int pair_second(int n, int dim) {
   return n - pair_number(pair_first(n, dim), pair_first(n, dim), dim) + pair_first(n, dim);
 }
 
-/// Moments of component i, j that no gradient needs: it takes a degree from direction i or j.
+/// The moments of stress component (i, j) that no gradient needs. A gradient lowers the degree in direction i
+/// or j, so that moments of the highest degree in both drop out.
 template <int i, int j>
 struct NotNeeded {
   static constexpr bool of(int k) { return stencil_digit(k, i) == 2 && stencil_digit(k, j) == 2; }
 };
 
-/// The moments of a stress by components: value(c, entry) is its component c times a weight.
+/// The moments of a stress, sum_p w_p sigma_p q_k(xi_p), by components: value(c, entry) is component c times
+/// w_p.
 template <int Dim, class P>
 using StressMoments = QuadraticPolynomial<Dim, P>[pair_count(Dim)];
 
@@ -139,7 +147,7 @@ KOKKOS_FORCEINLINE_FUNCTION void add_stress_moments(StressMoments<Dim, P>& momen
       });
 }
 
-/// f += sum_j moments of sigma_ij and dq / dx_j; f as moments.
+/// f_i += sum_j sum_p w_p sigma_ij dq_k / dx_j, as moments k, from the moments of the stress.
 template <int i, int Dim, class Real, class P>
 KOKKOS_FORCEINLINE_FUNCTION void add_divergence(const StressMoments<Dim, P>& moments,
                                                 const Vector<Dim, Real>& inverse_spacing,
@@ -149,7 +157,7 @@ KOKKOS_FORCEINLINE_FUNCTION void add_divergence(const StressMoments<Dim, P>& mom
   });
 }
 
-/// The force at the nodes of a stress sigma_p - in_lane.
+/// The force at the nodes, -sum_p V_p (sigma_p - in_lane) . grad N_I(x_p).
 template <int Dim, class Real, class Device, class P>
 [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void force(const CellLanes<Dim, Real, Device>& lanes,
                                                            const LaneGroup<Dim>& group,

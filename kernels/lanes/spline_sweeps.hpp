@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// The sweeps over dual cell lanes of one MUSL step with quadratic B-splines, a layer each call: A, B, C, and
-/// C with A of the next step, as in kernels/lanes/sweeps.hpp. Which corner of its dual cell a particle is in
-/// says which cell of the scene's grid it is in: C notes where that changes, for Algorithm 1. The mean
-/// divergence, if asked for, takes a sweep of its own before C (kernels/lanes/spline_means.hpp).
+/// C with A of the next step, as in kernels/lanes/sweeps.hpp.
+///
+/// The corner of the dual cell that holds a particle tells the cell of the scene's grid that holds it. C
+/// notes the layers in which it changes, for Algorithm 1. The mean divergence, if asked for, is a sweep of
+/// its own before C (kernels/lanes/spline_means.hpp).
 #pragma once
 
 #include <vsb/kernels/lanes/spline_means.hpp>
@@ -20,7 +22,7 @@ struct SumSplineLanes {
   LoadedLanes<Dim, Real, Device> on;
   LaneNodes<Dim, Real, Device> nodes;
   Field virtual_stress;
-  Kokkos::View<int*, Device> only;  ///< [layer]: 0 for those to leave alone; empty: none
+  Kokkos::View<int*, Device> only;  ///< [layer]: 0: the layer is skipped; empty: no layer is
 
   KOKKOS_FUNCTION void operator()(int layer) const {
     if (only.size() > 0 && only(layer) == 0) return;
@@ -83,7 +85,8 @@ struct MoveSplineGroup : MoveGroup<false, Material, Volume, Dim, Real, Device> {
   Kokkos::View<int*, Device> crossed;  ///< [layer]: 1 where a particle went from corner to corner
   Walls<Dim> walls;
 
-  /// Where in its cell a particle may be: beyond the middle of the outermost dual cells the grid ends.
+  /// The range of xi in which a particle stays in its cell. The faces of the grid go through the middle of
+  /// the outermost dual cells.
   struct Room {
     Vector<Dim, P> first, end;
     KOKKOS_FORCEINLINE_FUNCTION bool holds(const Vector<Dim, P>& xi) const {
@@ -100,7 +103,7 @@ struct MoveSplineGroup : MoveGroup<false, Material, Volume, Dim, Real, Device> {
       room.first[i] = P(Real(0));
       room.end[i] = P(Real(1));
       const int last = grid.cells[i] - 1;
-      // A ghost in the middle does not leave; what is outside by more than round-off, to_next_cell tells.
+      // A ghost at the middle of a cell stays. to_next_cell finds what is outside by more than round-off.
       constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
       for (int l = 0; l < P::width; ++l) {
         const int cell = lanes.cell(group, l)[i];
@@ -117,7 +120,7 @@ struct MoveSplineGroup : MoveGroup<false, Material, Volume, Dim, Real, Device> {
     else
       move<false>(group, layer);
   }
-  /// averaged: whether the divergence gives way to its mean.
+  /// averaged: whether the mean replaces the divergence.
   template <bool averaged>
   [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void move(const LaneGroup<Dim>& group, int layer) const {
     const auto& stencil = lanes.stencils(lanes.number_of(group));

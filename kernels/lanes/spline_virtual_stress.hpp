@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The sums of a group of dual cell lanes: those of kernels/lanes/spline_sums.hpp, and at the nodes where a
-/// traction acts its virtual stress (Eqs. 27, 28), sum_p V_p (sbar . grad N_a + fbar N_a).
+/// The sums of a group of dual cell lanes with loaded nodes: those of kernels/lanes/spline_sums.hpp, and at
+/// the loaded nodes I the virtual stress, Eq. (27), Eq. (28):
+///   f_I <- f_I + sum_p V_p (sbar(x_p) . grad N_I(x_p) + fbar(x_p) N_I(x_p)).
 ///
-/// A uniform sbar takes from sigma where all nodes of a cell are loaded or none, and needs the moments of the
-/// volume elsewhere. Any other field is evaluated at the particles.
+/// Three ways to compute this sum:
+/// - all nodes of each cell are loaded or none is, uniform sbar: sigma_p - sbar replaces sigma_p;
+/// - otherwise, uniform sbar: the sum follows from the volume moments sum_p V_p q_k(xi_p);
+/// - any other field is evaluated particle by particle.
 #pragma once
 
 #include <vsb/kernels/lanes/masks.hpp>
@@ -23,7 +26,7 @@ KOKKOS_FORCEINLINE_FUNCTION void add_where(const std::uint64_t (&bits)[LaneStenc
   static_for<f.size>([&](auto a) VSB_UNROLLED { f[a] += keep_lanes(bits[a / 3] >> (a % 3), t[a]); });
 }
 
-/// No moment is superfluous.
+/// All moments are needed.
 struct AllNeeded {
   static constexpr bool of(int) { return false; }
 };
@@ -73,7 +76,7 @@ template <class Field, int Dim, class Real, class Device, class P>
   const LaneMask held = on.lanes.held(entry / P::width);
   for (int l = 0; l < P::width; ++l) {
     auto at = VirtualStressValue<Dim, Real>::zero();
-    if (held >> l & 1) {  // no field need be finite at a ghost's place
+    if (held >> l & 1) {  // a field need not be finite at the position of a ghost
       Vector<Dim, Real> xi_l;
       for (int i = 0; i < Dim; ++i) xi_l[i] = xi[i][l];
       at = field.at(on.grid.map(on.lanes.cell(group, l), xi_l).x, tractions);
@@ -121,7 +124,7 @@ template <class Field, int Dim, class Real, class Device, class P>
 
 }  // namespace spline_sums
 
-/// Everything that a group gives to its nodes.
+/// All sums of a group: mass, momentum, and force with the virtual stress.
 template <class Field, int Dim, class Real, class Device>
 KOKKOS_FORCEINLINE_FUNCTION void sum_spline_group(const LoadedLanes<Dim, Real, Device>& on,
                                                   const LaneGroup<Dim>& group, const Field& field,

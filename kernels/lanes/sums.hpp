@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// What the particles of a group of cell lanes give to its nodes (Eqs. 10, 11, 27, 28):
-///   mass        sum_p m_p N_a,
-///   momentum    sum_p m_p v_p N_a,
-///   force       sum_p -V_p sigma_p . grad N_a, from the moments sum_p -V_p sigma_p . grad q_k
-///               (physics/cell_polynomial.hpp);
-/// the virtual stress at loaded nodes is added by kernels/lanes/virtual_stress.hpp. Gravity is left to the
-/// nodes: sum_p N_a m_p g = m_a g.
+/// The sums over the particles p of a group of cell lanes at its nodes I, Eq. (10), Eq. (11):
+///   mass        m_I = sum_p m_p N_I(x_p),
+///   momentum    p_I = sum_p m_p v_p N_I(x_p),
+///   force       f_I = -sum_p V_p sigma_p . grad N_I(x_p).
+/// Mass and momentum are summed with the basis functions N_I themselves. The force is summed as moments with
+/// the monomials q_k of a cell, -sum_p V_p sigma_p . grad q_k(xi_p); differences of these moments are f_I
+/// (physics/cell_polynomial.hpp).
 ///
-/// Every function is a loop over the slots of a group, with few enough sums to stay in registers.
+/// kernels/lanes/virtual_stress.hpp adds the virtual stress at loaded nodes, Eq. (27), Eq. (28).
+/// kernels/lanes/update_nodes.hpp adds gravity: sum_p m_p g N_I(x_p) = m_I g.
+///
+/// Every function is a loop over the slots of a group. It has few sums, so that they stay in registers.
 #pragma once
 
 #include <vsb/kernels/lanes/scatter.hpp>
@@ -23,7 +26,7 @@ KOKKOS_FORCEINLINE_FUNCTION void set_zero(CellPolynomial<Dim, P>& m) {
   static_for<(1 << Dim)>([&](auto k) VSB_UNROLLED { m[k] = P(0); });
 }
 
-/// The moments of volume.
+/// The moments of volume, sum_p V_p q_k(xi_p).
 template <int Dim, class Real, class Device, class P>
 KOKKOS_FORCEINLINE_FUNCTION void volume_moments(const CellLanes<Dim, Real, Device>& lanes,
                                                 const LaneGroup<Dim>& group, CellPolynomial<Dim, P>& m) {
@@ -32,7 +35,7 @@ KOKKOS_FORCEINLINE_FUNCTION void volume_moments(const CellLanes<Dim, Real, Devic
     add_moments<Dim>(m, lanes.load(lanes.volume_column, entry), lanes.load_xi(entry));
 }
 
-/// The masses at the nodes.
+/// The masses at the nodes, m_I = sum_p m_p N_I(x_p).
 template <int Dim, class Real, class Device, class P>
 KOKKOS_FORCEINLINE_FUNCTION void mass(const CellLanes<Dim, Real, Device>& lanes, const LaneGroup<Dim>& group,
                                       CellPolynomial<Dim, P>& m) {
@@ -41,7 +44,8 @@ KOKKOS_FORCEINLINE_FUNCTION void mass(const CellLanes<Dim, Real, Device>& lanes,
     CornerFunctions<Dim, P>(lanes.load_xi(entry)).add(m, lanes.load(lanes.mass_column, entry));
 }
 
-/// Stores the mass matrices of a group's cells; m are the masses at their nodes.
+/// Stores the mass matrices of a group's cells, M_IJ = sum_p m_p N_I(x_p) N_J(x_p). m: the masses at their
+/// nodes.
 template <int Dim, class Real, class Device, class P>
 [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void mass_matrices(const CellLanes<Dim, Real, Device>& lanes,
                                                                    const LaneGroup<Dim>& group,
@@ -57,7 +61,7 @@ template <int Dim, class Real, class Device, class P>
   m = times<Dim>(M, one);
 }
 
-/// The momenta at the nodes.
+/// The momenta at the nodes, p_I = sum_p m_p v_p N_I(x_p).
 template <int Dim, class Real, class Device, class P>
 KOKKOS_FORCEINLINE_FUNCTION void momentum(const CellLanes<Dim, Real, Device>& lanes,
                                           const LaneGroup<Dim>& group, CellPolynomial<Dim, P> (&p)[Dim]) {
@@ -70,7 +74,7 @@ KOKKOS_FORCEINLINE_FUNCTION void momentum(const CellLanes<Dim, Real, Device>& la
   }
 }
 
-/// The moments of force. stress(entry) gives sigma, or what is to be taken for it.
+/// The moments of force, -sum_p V_p sigma_p . grad q_k(xi_p). stress(entry): sigma_p, or sigma_p - sbar.
 template <bool Cubic, int Dim, class Real, class Device, class Stress, class P>
 KOKKOS_FORCEINLINE_FUNCTION void force(const CellLanes<Dim, Real, Device>& lanes, const LaneGroup<Dim>& group,
                                        const Vector<Dim, Real>& inverse_spacing, const Stress& stress,
@@ -98,7 +102,7 @@ KOKKOS_FORCEINLINE_FUNCTION void force(const CellLanes<Dim, Real, Device>& lanes
 
 }  // namespace lane_sums
 
-/// The sums of all three, a layer's worth.
+/// The sums of mass, momentum and force of a layer.
 template <int Dim, class Real, class Device>
 using StepSums = LayerSums<0, LaneNodes<Dim, Real, Device>::sum_columns, Dim, Real, Device>;
 
@@ -120,7 +124,7 @@ KOKKOS_FORCEINLINE_FUNCTION void add_mass_and_momentum(const CellLanes<Dim, Real
 
 }  // namespace lane_sums
 
-/// Everything that a group gives to nodes without virtual stress.
+/// Adds mass, momentum and force of a group without virtual stress to its nodes.
 template <bool Cubic, int Dim, class Real, class Device>
 [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void sum_group(const CellLanes<Dim, Real, Device>& lanes,
                                                                const LaneGroup<Dim>& group,

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Tractions on surface points beside cell lanes (Eqs. 12, 13; see kernels/particles/surface_traction.hpp):
-///   f_I <- f_I + sum_b N_I(x_b) sbar(x_b) a_b,   a_b <- cof(I + dt L) a_b,
-/// cell by cell: the points of a cell share its nodal values of dt v and its polynomials of dt v*.
+/// Tractions on surface points beside cell lanes, Eq. (12), Eq. (13) (see
+/// kernels/particles/surface_traction.hpp):
+///   f_I <- f_I + sum_b N_I(x_b) sbar(x_b) a_b,   a_b <- cof(I + dt L) a_b.
+/// Points are worked on cell by cell: those of a cell share its nodal values of dt v and its polynomials of
+/// dt v*.
 ///
-/// Reads the increments that the nodes bring to the particles; writes the force of the nodes' sums, each
-/// layer its own, and places and areas of the points.
+/// Reads the nodal increments dt v and dt v*; writes the force of the nodes' sums, a layer each call, and
+/// positions and areas of the points.
 #pragma once
 
 #include <vsb/kernels/lanes/build.hpp>
@@ -18,7 +20,7 @@ namespace vsb {
 
 namespace kernel {
 
-/// One point: from its position in the grid; one outside it gets a cell outside.
+/// One point: finds its cell and xi from its position. A point outside the grid gets a cell outside the grid.
 template <int Dim, class Real, class Device>
 struct PackSurfacePoint {
   SurfacePoints<Dim, Real, Device> from;
@@ -55,9 +57,9 @@ struct UnpackSurfacePoint {
   }
 };
 
-/// Sorts the points by cell; a single work item. There are few of them, and a sort is due whenever one on a
-/// face between cells goes to the other side: this is faster than to start half a dozen kernels. Gives the
-/// number of runs, and the lowest number of a point outside the grid less the number of points, or 0.
+/// Sorts the points by cell; a single work item. Points are few, and are sorted often: whenever one crosses a
+/// face between cells. One kernel is faster here than half a dozen parallel ones. Results: the number of
+/// runs, and the lowest number of a point outside the grid less the number of points, or 0.
 template <int Dim, class Real, class Device>
 struct SortSurfacePoints {
   LaneSurfacePoints<Dim, Real, Device> points;
@@ -89,7 +91,7 @@ struct SortSurfacePoints {
     for (int i = 0; i < Dim; ++i) inside = inside && cell[i] >= 0 && cell[i] < grid.cells[i];
     return inside;
   }
-  /// Of a cell in the box; of all outside it the number of cells.
+  /// The number of a cell in the box; all cells outside the box have the number of cells.
   KOKKOS_FUNCTION int number(const Vector<Dim, int>& cell) const {
     const CellNumbering<Dim> box{points.box.cells};
     Vector<Dim, int> c;
@@ -101,7 +103,7 @@ struct SortSurfacePoints {
   }
 };
 
-/// The points of one cell: places and areas at the end of the step. Counts those that go to another cell.
+/// The points of one cell: positions and areas at the end of the step. Counts points that change their cell.
 template <int Dim, class Real, class Device>
 struct MoveLaneSurfacePoints {
   CellLanes<Dim, Real, Device> lanes;
@@ -257,8 +259,8 @@ int sort_surface_points(const Exec& exec, const LaneMemory<Dim, Real, Device>& m
   return -1;
 }
 
-/// Moves the points by the increments of the step that the nodes have made; particles may have gone ahead,
-/// but not to other lanes. Waits for the device. Does nothing where there are no points.
+/// Moves the points by the nodal increments of the step. To be called before particles change their lanes;
+/// particles may have been moved already. Waits for the device. Does nothing without points.
 template <class Exec, int Dim, class Real, class Device>
 void move_surface_points(const Exec& exec, const LaneMemory<Dim, Real, Device>& m,
                          LaneSurfacePoints<Dim, Real, Device>& points) {

@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// The sweeps over cell lanes of one MUSL step, a layer each call:
-///   A  mass, momentum and force of the nodes (kernels/lanes/sums.hpp);
-///   B  v_p <- v_p + dt sum_I N_Ip a_I (FLIP), and the momentum of the re-map, sum_p N_Ip m_p v_p;
-///   C  L = sum_I v*_I (x) grad N_Ip,  sigma <- material(sigma, L dt),  V <- V det(I + dt L) or V exp(dt tr
-///   L),
-///      x_p <- x_p + dt sum_I N_Ip v_I; particles that leave their cell go to the layer's list of leavers;
-///   C and A of the next step in one, while the particles are at hand.
+///   A  mass, momentum and force of the nodes: m_I = sum_p m_p N_Ip,  p_I = sum_p m_p v_p N_Ip,
+///      f_I = -sum_p V_p sigma_p . grad N_Ip with the virtual stress (kernels/lanes/sums.hpp);
+///   B  FLIP, v_p <- v_p + dt sum_I N_Ip a_I, and the momentum of the re-map, p*_I = sum_p N_Ip m_p v_p;
+///   C  L = sum_I v*_I (x) grad N_Ip,  sigma <- material(sigma, L dt),
+///      V <- V det(I + dt L) or V exp(dt tr L),  x_p <- x_p + dt sum_I N_Ip v_I.
+///      Particles that leave their cell go to the layer's list of leavers.
+/// C of a step and A of the next one are one sweep: a particle is read and written once for both.
 ///
-/// The nodes bring dt a, dt v in cells and dt v* in cells, so that only sums are left for the particles.
-/// Against volumetric locking the divergence of L gives way to its mean over the cell
-/// (physics/mean_divergence.hpp), for which C looks at the volumes first.
+/// The nodes store dt a, dt v in cells and dt v* in cells, so that the particles only interpolate.
 ///
-/// With many particles in a cell B does without them. p*_I = p_I + dt sum_J M_IJ a_J, and the consistent mass
-/// matrix M_IJ = sum_p m_p N_Ip N_Jp is summed up by A, cell by cell (physics/cell_mass_matrix.hpp):
-/// RemapLanes adds M dt a to the nodes, and C begins with v_p <- v_p + dt sum_I N_Ip a_I.
+/// Against volumetric locking the mean divergence of a cell replaces the divergence of L
+/// (physics/mean_divergence.hpp). C sums the particles' volumes first to find it.
+///
+/// With many particles per cell the mass matrix of the cell replaces sweep B:
+///   p*_I = p_I + dt sum_J M_IJ a_J,   M_IJ = sum_p m_p N_Ip N_Jp.
+/// A sums the consistent mass matrix M cell by cell (physics/cell_mass_matrix.hpp), RemapLanes adds M dt a to
+/// the nodes, and C begins with v_p <- v_p + dt sum_I N_Ip a_I.
 #pragma once
 
 #include <vsb/kernels/lanes/plasticity.hpp>
@@ -43,7 +46,7 @@ struct SumLanes {
   LoadedLanes<Dim, Real, Device> on;
   LaneNodes<Dim, Real, Device> nodes;
   Field virtual_stress;
-  Kokkos::View<int*, Device> only;  ///< [layer]: 0 for those to leave alone; empty: none
+  Kokkos::View<int*, Device> only;  ///< [layer]: 0: the layer is skipped; empty: no layer is
 
   KOKKOS_FUNCTION void operator()(int layer) const {
     if (only.size() > 0 && only(layer) == 0) return;
@@ -138,7 +141,7 @@ struct MoveGroup {
   Material material;
   Volume volume;
   Leavers<Dim, Real, Device> leavers;
-  Real beta = 0;  ///< share of the divergence that gives way to a mean (physics/mean_divergence.hpp)
+  Real beta = 0;  ///< share of the divergence that a mean replaces (physics/mean_divergence.hpp)
 
   KOKKOS_FORCEINLINE_FUNCTION void operator()(const LaneGroup<Dim>& group, int layer) const {
     if (beta > Real(0))
@@ -146,7 +149,7 @@ struct MoveGroup {
     else
       move<false>(group, layer);
   }
-  /// averaged: whether the divergence gives way to its mean.
+  /// averaged: whether the mean replaces the divergence.
   template <bool averaged>
   [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void move(const LaneGroup<Dim>& group, int layer) const {
     P mean;
@@ -187,7 +190,7 @@ struct MoveGroup {
     return !any(!inside);
   }
 
-  /// The mean of dt tr L over every cell, its particles weighted by their volumes.
+  /// The mean of dt tr L over every cell, sum_p V_p dt tr L_p / sum_p V_p.
   [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION P mean_divergence(const LaneGroup<Dim>& group) const {
     CellPolynomial<Dim, P> theta;
     lane_sums::set_zero<Dim>(theta);
@@ -218,7 +221,7 @@ struct MoveGroup {
       // Lane by lane: such materials branch.
       const LaneMask held = lanes.held(entry / P::width);
       for (int l = 0; l < P::width; ++l) {
-        if (!(held >> l & 1)) continue;  // a ghost may be strained without end
+        if (!(held >> l & 1)) continue;  // the strain of a ghost has no bound
         Vector<remembered, Real> state;
         SymmetricTensor<Dim, Real> s;
         Matrix<Dim, Real> L_l;
@@ -233,8 +236,9 @@ struct MoveGroup {
     }
   }
 
-  /// Takes the particles of a slot that left their cell to the layer's list, and those on a face off it.
-  /// Ghosts are carried along, and outside their cell would grow without bound: the slot's are reset.
+  /// Copies the particles of a slot that left their cell to the layer's list, and moves those on a face off
+  /// it. Ghosts move with the velocity field. Outside their cell their coordinates would grow without bound,
+  /// so that those of the slot are reset.
   [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void leave(const LaneGroup<Dim>& group, int layer,
                                                              size_t entry) const {
     const size_t slot = entry / P::width;
@@ -287,8 +291,8 @@ struct MoveGroup {
     }
     ++leavers.count(layer);
   }
-  /// Where all particles of a slot away from the faces of the grid are in their cell or the next one: which
-  /// are below and above along every axis; xi becomes that in the cell where they are.
+  /// The common case: all particles of a slot are in their cell or a neighbour of it, and away from the faces
+  /// of the grid. Finds which lanes went below and above along every axis; xi becomes that in the new cell.
   KOKKOS_FORCEINLINE_FUNCTION bool next_to_here(const LaneGroup<Dim>& group, Vector<Dim, P>& xi,
                                                 LaneMask held, LaneMask (&below)[Dim],
                                                 LaneMask (&above)[Dim]) const {
@@ -312,7 +316,7 @@ struct MoveGroup {
     xi = there;
     return true;
   }
-  /// The same in any case, the cells of the particles that left theirs among it; which lanes these are.
+  /// Any case, lane by lane: finds the new cells of the particles that left theirs. Returns their lanes.
   [[gnu::noinline]] KOKKOS_FUNCTION LaneMask
   leave_one_by_one(const LaneGroup<Dim>& group, Vector<Dim, P>& xi, LaneMask held,
                    typename Leavers<Dim, Real, Device>::Head& head) const {
@@ -337,7 +341,7 @@ struct MoveGroup {
   }
 };
 
-/// As many particles of a layer as may leave it before its sums are made anew.
+/// The number of particles that may leave the cells of a layer before its sums are computed anew.
 template <int Dim, class Real, class Device>
 KOKKOS_FUNCTION int few_leavers(const CellLanes<Dim, Real, Device>& lanes, int layer) {
   int slots = 0;
@@ -346,9 +350,9 @@ KOKKOS_FUNCTION int few_leavers(const CellLanes<Dim, Real, Device>& lanes, int l
   return slots * lanes.width / 16;
 }
 
-/// Sweep C of a layer, by move(group), and A of the next step, by sum(group, number), if wanted. Where many
-/// particles leave their cells, another sweep after they arrived costs less than to add them to the sums one
-/// by one: a layer that finds so many does not go on with A.
+/// Sweep C of a layer, by move(group), and, if asked for, A of the next step, by sum(group, number). A
+/// particle that leaves its cell is added to the sums on its own when it arrives. For many particles a sweep
+/// A after their arrival costs less, so that a layer with many of them ends its sweep A here.
 template <int Dim, class Real, class Device, class Move, class Sum>
 KOKKOS_FORCEINLINE_FUNCTION void move_layer(const CellLanes<Dim, Real, Device>& lanes,
                                             const Leavers<Dim, Real, Device>& leavers, int layer,

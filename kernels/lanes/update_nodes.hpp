@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The equation of motion at the nodes of cell lanes (see kernels/particles/update_nodes.hpp), a chunk each
-/// call:
-///   first  v_I = p_I / m_I,  f_I <- damped(f_I + m_I g),  dt a_I,  dt (v_I + dt a_I) in cells;
-///   second dt v*_I = dt p*_I / m_I in cells, with the momentum of the re-map.
-/// Components prescribed at a node are zero. Chunks without mass, which a body that moves has before it, are
-/// passed over. The sums are zero afterwards, for what comes next to add to.
+/// The equation of motion at the nodes of cell lanes, Eq. (9) (see kernels/particles/update_nodes.hpp), a
+/// chunk each call:
+///   first   v_I = p_I / m_I,  f_I <- damped(f_I + m_I g),  a_I = f_I / m_I;  stores dt a_I, and
+///           dt (v_I + dt a_I) in cells;
+///   second  v*_I = p*_I / m_I, with the momentum p*_I of the re-map;  stores dt v*_I in cells.
+/// Components prescribed at a node are zero. Chunks without mass are skipped; a moving body has some ahead of
+/// it. The sums are set to zero, so that the next sweep can add to them.
 #pragma once
 
 #include <vsb/physics/explicit_dynamics.hpp>
@@ -35,7 +36,7 @@ struct LaneNodeRows {
     P(Real(0)).store(nodes.at(nodes.lower_sums + column, node));
     if (Dim > 1) P(Real(0)).store(nodes.at(nodes.upper_sums + column, node));
   }
-  /// The sums, which begin with zero again: at no time are they as close at hand.
+  /// Returns a sum and sets it to zero, while it is in the cache.
   KOKKOS_FORCEINLINE_FUNCTION P take_sum(int column, int node) const {
     const P s = sum(column, node);
     clear(column, node);
@@ -75,8 +76,8 @@ struct UpdateLaneNodes : LaneNodeRows<Dim, Real, Device, Planes> {
       this->free_component(dx, chunk, i).store(nodes.at(nodes.displacement_column + i, node));
     });
   }
-  /// Where there is no mass, all of this is zero, and was so before but for the first time. There may be a
-  /// force: of particles on the face of their cell.
+  /// Nodes without mass: clears their sums, since particles on the face of their cell can give such a node a
+  /// force. Results are zero, and are written only where they were not zero before.
   KOKKOS_FUNCTION void leave_empty(int node) const {
     for (int c = 1; c < nodes.sum_columns; ++c) this->clear(c, node);
     if (!any(nodes.load(nodes.inverse_mass_column, node) > P(Real(0)))) return;

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The sums of a group of cell lanes with loaded nodes: those of kernels/lanes/sums.hpp, and at the nodes
-/// where a traction acts its virtual stress (Eqs. 27, 28), sum_p V_p (sbar . grad N_a + fbar N_a).
+/// The sums of a group of cell lanes with loaded nodes: those of kernels/lanes/sums.hpp, and at the loaded
+/// nodes I the virtual stress, Eq. (27), Eq. (28):
+///   f_I <- f_I + sum_p V_p (sbar(x_p) . grad N_I(x_p) + fbar(x_p) N_I(x_p)).
 ///
-/// A uniform sbar needs only the volume moments sum_p V_p q_k; where a cell has all its nodes loaded or none,
-/// not even these: sigma - sbar takes the place of sigma, as it does there of an affine sbar like that of
-/// water. Elsewhere an affine sbar needs those with one direction squared too. Any other field is evaluated
-/// at the particles.
+/// Four ways to compute this sum:
+/// - all nodes of each cell are loaded or none is, and sbar is uniform, or affine along one direction without
+///   shear as the pressure of water: sigma_p - sbar(x_p) replaces sigma_p in the sums of sums.hpp, and fbar
+///   adds sum_p V_p fbar N_I(x_p);
+/// - otherwise, uniform sbar: the sum follows from the volume moments sum_p V_p q_k(xi_p);
+/// - otherwise, affine sbar: from these and from the moments with one direction squared, sum_p V_p xi_j^2
+///   q_k(xi_p);
+/// - any other field is evaluated particle by particle.
 #pragma once
 
 #include <vsb/kernels/lanes/masks.hpp>
@@ -16,7 +21,7 @@
 
 namespace vsb {
 
-/// What a loaded group has to know beside its particles.
+/// What the sums of a loaded group need beside its particles.
 template <int Dim, class Real, class Device>
 struct LoadedLanes {
   CellLanes<Dim, Real, Device> lanes;
@@ -41,7 +46,7 @@ KOKKOS_FORCEINLINE_FUNCTION void add_where(const std::uint64_t* bits, const Cell
   static_for<f.size>([&](auto a) VSB_UNROLLED { f[a] += keep_lanes(bits[a >> 1] >> (a & 1), t[a]); });
 }
 
-/// sum_p V_p sbar . grad N_a from the volume moments, component by component, where bits are set.
+/// sum_p V_p sbar . grad N_a from the volume moments, component by component, at the nodes whose bit is set.
 template <int Dim, class P, class Real>
 KOKKOS_FORCEINLINE_FUNCTION void add_uniform(const SymmetricTensor<Dim, Real>& bar,
                                              const Vector<Dim, Real>& inverse_spacing,
@@ -72,8 +77,8 @@ KOKKOS_FORCEINLINE_FUNCTION Vector<Dim, Real> lower_corner(const LoadedLanes<Dim
   return on.grid.map(on.lanes.cell(group, 0), Vector<Dim, Real>::zero()).x;
 }
 
-/// sum_p V_p (sbar(x_p) . grad N_a + fbar N_a) of an affine field from the second moments of the volume,
-/// where bits are set.
+/// sum_p V_p (sbar(x_p) . grad N_a + fbar N_a) of an affine field from the second moments of the volume, at
+/// the nodes whose bit is set.
 template <int Dim, class P, class Real, class Device>
 KOKKOS_FORCEINLINE_FUNCTION void add_affine(const LoadedLanes<Dim, Real, Device>& on,
                                             const LaneGroup<Dim>& group, const AffineStress<Dim, Real>& bar,
@@ -102,8 +107,8 @@ KOKKOS_FORCEINLINE_FUNCTION void add_affine(const LoadedLanes<Dim, Real, Device>
   });
 }
 
-/// Normal stress a of fields that vary along direction j alone, and are without shear, in the cells of a
-/// group: b + d xi_j. Returns its gradient along j in Pa/m.
+/// For fields that vary along direction j alone and have no shear: normal stress a is b + d xi_j in each cell
+/// of a group. Returns its gradient along j in Pa/m.
 template <int j, class Field, int Dim, class P, class Real, class Device>
 KOKKOS_FORCEINLINE_FUNCTION Real along_cells(const LoadedLanes<Dim, Real, Device>& on,
                                              const LaneGroup<Dim>& group, const Field& field,
@@ -116,7 +121,7 @@ KOKKOS_FORCEINLINE_FUNCTION Real along_cells(const LoadedLanes<Dim, Real, Device
   return slope;
 }
 
-/// What add_affine does, of such fields.
+/// add_affine for fields that vary along direction j alone and have no shear.
 template <int j, class Field, int Dim, class P, class Real, class Device>
 KOKKOS_FORCEINLINE_FUNCTION void add_affine_along(const LoadedLanes<Dim, Real, Device>& on,
                                                   const LaneGroup<Dim>& group, const Field& field,
@@ -134,7 +139,7 @@ KOKKOS_FORCEINLINE_FUNCTION void add_affine_along(const LoadedLanes<Dim, Real, D
   });
 }
 
-/// Moments of the volumes of a group, to which add(moments, V, xi) adds a slot.
+/// Moments of the volumes of a group; add(moments, V, xi) adds the particles of a slot.
 template <int Dim, class Real, class Device, class Add>
 KOKKOS_FORCEINLINE_FUNCTION SecondMoments<Dim, typename Lanes<Real>::Pack> second_moments(
     const CellLanes<Dim, Real, Device>& lanes, const LaneGroup<Dim>& group, const Add& add) {
@@ -146,7 +151,7 @@ KOKKOS_FORCEINLINE_FUNCTION SecondMoments<Dim, typename Lanes<Real>::Pack> secon
   return volume;
 }
 
-/// The affine fields of all nodes of a group.
+/// Adds the affine fields at all loaded nodes of a group.
 template <class Field, int Dim, class P, class Real, class Device>
 KOKKOS_FORCEINLINE_FUNCTION void add_affine_fields(const LoadedLanes<Dim, Real, Device>& on,
                                                    const LaneGroup<Dim>& group, const Field& field,
@@ -184,7 +189,7 @@ KOKKOS_FORCEINLINE_FUNCTION void function_traction(const LoadedLanes<Dim, Real, 
     const LaneMask held = lanes.held(entry / P::width);
     for (int l = 0; l < P::width; ++l) {
       auto at = VirtualStressValue<Dim, Real>::zero();
-      if (held >> l & 1) {  // no field need be finite at a ghost's place
+      if (held >> l & 1) {  // a field need not be finite at the position of a ghost
         Vector<Dim, Real> xi_l;
         for (int i = 0; i < Dim; ++i) xi_l[i] = xi[i][l];
         at = field.at(on.grid.map(lanes.cell(group, l), xi_l).x, tractions);
@@ -206,13 +211,13 @@ KOKKOS_FORCEINLINE_FUNCTION void function_traction(const LoadedLanes<Dim, Real, 
 
 }  // namespace lane_sums
 
-/// Bit l: the cell in lane l is loaded; where all nodes of a cell are or none.
+/// Bit l: the cell in lane l is loaded, for groups in which all nodes of a cell are loaded or none is.
 template <int Dim>
 KOKKOS_FORCEINLINE_FUNCTION std::uint64_t loaded_cells(const LaneGroup<Dim>& group) {
   return group.loaded[0] & group.loaded[0] >> 1;
 }
 
-/// Everything that a group gives to nodes, all of a cell loaded or none, by a uniform field.
+/// All sums of a group in which all nodes of a cell are loaded or none is, by a uniform field.
 template <bool Cubic, class Field, int Dim, class Real, class Device>
 [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void sum_whole_group(const LoadedLanes<Dim, Real, Device>& on,
                                                                      const LaneGroup<Dim>& group,
@@ -233,8 +238,8 @@ template <bool Cubic, class Field, int Dim, class Real, class Device>
   static_for<Dim>([&](auto i) VSB_UNROLLED { sums.add_moments(1 + Dim + i, group, f[i]); });
 }
 
-/// The same by fields that vary along direction j alone, and are without shear: sigma - sbar takes the place
-/// of sigma, and fbar_j adds V fbar_j N_a.
+/// All sums of such a group, by fields that vary along direction j alone and have no shear. sigma - sbar
+/// replaces sigma, and fbar_j adds sum_p V_p fbar_j N_a.
 template <int j, bool Cubic, class Field, int Dim, class Real, class Device>
 [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void sum_whole_group_along(
     const LoadedLanes<Dim, Real, Device>& on, const LaneGroup<Dim>& group, const Field& field,
@@ -266,7 +271,7 @@ template <int j, bool Cubic, class Field, int Dim, class Real, class Device>
   static_for<Dim>([&](auto i) VSB_UNROLLED { sums.add_moments(1 + Dim + i, group, f[i]); });
 }
 
-/// The same with nodes loaded in any way, by any field.
+/// All sums of a group with nodes loaded in any way, by any field.
 template <bool Cubic, class Field, int Dim, class Real, class Device>
 [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void sum_partly_loaded_group(
     const LoadedLanes<Dim, Real, Device>& on, const LaneGroup<Dim>& group, const Field& field,
@@ -298,7 +303,7 @@ template <bool Cubic, class Field, int Dim, class Real, class Device>
   static_for<Dim>([&](auto i) VSB_UNROLLED { sums.add(1 + Dim + i, group, f[i]); });
 }
 
-/// Everything that a group gives to its nodes.
+/// All sums of a group: mass, momentum, and force with the virtual stress.
 template <bool Cubic, class Field, int Dim, class Real, class Device>
 KOKKOS_FORCEINLINE_FUNCTION void sum_group_with(const LoadedLanes<Dim, Real, Device>& on,
                                                 const LaneGroup<Dim>& group, const Field& field,
