@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// What a caller may have forgotten, and what would then run and be wrong without a word: checks on the host,
-/// of extents and of flags, at every call. Each throws std::invalid_argument with what to do.
+/// Checks of what a caller passes, where an omission would run and give wrong results without any sign of it.
+/// They run on the host at every call, on extents and flags. Each throws std::invalid_argument with what to
+/// do.
 ///
-/// Reads the masses and volumes of the particles, but only where particles are new (check_masses).
+/// check_masses alone reads fields of particles: masses and volumes, once for new particles.
 #pragma once
 
 #include <cmath>
@@ -27,7 +28,7 @@ template <class... Parts>
   throw std::invalid_argument(text.str());
 }
 
-/// Refuses a View with other than the rows that belong to it.
+/// Refuses a View with another number of rows than expected.
 inline void check_rows(const char* what, size_t rows, int expected, const char* cure) {
   if (rows != static_cast<size_t>(expected))
     refuse(what, " has ", rows, " rows where there are ", expected, ": ", cure);
@@ -61,7 +62,7 @@ void check_grid(const UniformGrid<Dim, Real>& grid) {
   check_grid(static_cast<const CellNumbering<Dim>&>(grid));
 }
 
-/// Refuses particles without rows of material state for what a material remembers.
+/// Refuses particles whose material state has too few rows or columns for a material.
 template <int Dim, class Real, class Device>
 void check_material_state(const Particles<Dim, Real, Device>& particles, int first, int last, int columns) {
   const auto& state = particles.material_state;
@@ -88,8 +89,8 @@ struct FindMassless {
 
 }  // namespace kernel
 
-/// Refuses particles of which some have no mass or no volume. Looks at all particles: for new ones alone.
-/// Waits for the device.
+/// Refuses particles of which some have no mass or no volume. Reads all particles, so call it only for new
+/// ones. Waits for the device.
 template <class Exec, int Dim, class Real, class Device>
 void check_masses(const Exec& exec, const Particles<Dim, Real, Device>& particles) {
   const int n = particles.count();

@@ -26,8 +26,8 @@ struct State {
   bool loads_found = false;  ///< whether the load has been found to act at some node
 };
 
-/// Allocates the nodes and the occupancy for given particles. After particles were added or removed, or their
-/// arrays moved: anew.
+/// Allocates the nodes and the occupancy for given particles. Call it again after particles were added or
+/// removed, or their arrays moved.
 template <class Basis, int Dim, class Real, class Device>
 State<Dim, Real, Device> make_state(const Particles<Dim, Real, Device>& particles, const Basis& basis) {
   particles.check();
@@ -50,7 +50,7 @@ struct StepOptions {
   Volumetric volumetric = Volumetric::full;
 };
 
-/// Refuses what no step can be made with.
+/// Refuses options with which no step can be made.
 template <int Dim, class Real>
 void check_options(const StepOptions<Dim, Real>& options) {
   if (!(options.dt > Real(0)) || !std::isfinite(options.dt))
@@ -65,7 +65,7 @@ void check_options(const StepOptions<Dim, Real>& options) {
 
 namespace detail {
 
-/// Refuses what a step would take without a word and get wrong.
+/// Refuses input that would make a step wrong without any sign of it.
 template <class Basis, int Dim, class Real, class Device>
 void check_step(const State<Dim, Real, Device>& s, const std::vector<Body<Real>>& bodies, const Basis& basis,
                 const StepOptions<Dim, Real>& options) {
@@ -82,10 +82,10 @@ void check_step(const State<Dim, Real, Device>& s, const std::vector<Body<Real>>
 
 }  // namespace detail
 
-/// Advances the state by one step; `virtual_stress` is the field at the end of the step. Returns -1; or, and
-/// then the step is not made, the lowest number of a particle outside the grid, or the number of particles
-/// plus that of a surface point outside it. Throws std::invalid_argument, before anything is changed, where
-/// something is missing that a step needs (kernels/preconditions.hpp).
+/// Advances the state by one step; `virtual_stress` is the field at the end of the step. Returns -1 after the
+/// step. Where a particle lies outside the grid, returns its lowest number; where a surface point does, that
+/// of the point plus the number of particles. Then the step is not made. Throws std::invalid_argument, before
+/// anything is changed, where something is missing that a step needs (kernels/preconditions.hpp).
 template <class Exec, class Basis, class Field, int Dim, class Real, class Device>
 int step(const Exec& exec, State<Dim, Real, Device>& s, const std::vector<Body<Real>>& bodies,
          const Basis& basis, const Field& virtual_stress, const StepOptions<Dim, Real>& options) {

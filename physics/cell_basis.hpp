@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// What bases whose support is the corners of one cell have in common: their bins. A bin collects the
-/// particles that share their support nodes; here it is a cell, and it carries the number of the cell's
-/// lowest node.
+/// The bins of bases whose support nodes are the corners of one cell. A bin collects the particles that share
+/// their support nodes: here a cell, with the number of its lowest node.
 #pragma once
 
 #include <vsb/physics/cell_numbering.hpp>

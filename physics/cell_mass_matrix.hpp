@@ -4,9 +4,8 @@
 /// N_b(xi_p).
 ///
 /// Along one direction a product of two basis functions is (1 - xi)^2, xi (1 - xi) or xi^2, so that M has
-/// 3^Dim different numbers. They are sums of terms of one sign: a node with next to no mass has its row to
-/// round-off, which differences of moments would not give. T is a number, or a pack with a cell in every
-/// lane.
+/// 3^Dim different numbers. Each is a sum of terms of one sign, exact to round-off even at a node of little
+/// mass. Differences of moments would not be. T is a number, or a pack with a cell in every lane.
 #pragma once
 
 #include <vsb/views/static_for.hpp>

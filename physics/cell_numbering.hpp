@@ -7,7 +7,7 @@
 
 namespace vsb {
 
-/// A place in a cell, and the volume there per volume of local coordinates.
+/// A position in a cell, and the volume there per volume of local coordinates.
 template <int Dim, class Real>
 struct CellPoint {
   Vector<Dim, Real> x;  ///< m
@@ -44,7 +44,7 @@ struct CellNumbering {
     for (int i = Dim - 1; i >= 0; --i) index = index * (cells[i] + 1) + ijk[i];
     return index;
   }
-  /// The numbers (i, j, k) of a node along the axes, from 0: not where it is, which node_position tells.
+  /// The numbers (i, j, k) of a node along the axes, from 0. node_position gives its position.
   KOKKOS_FUNCTION Vector<Dim, int> node_ijk(int node) const {
     Vector<Dim, int> ijk;
     for (int i = 0; i < Dim; ++i) {
@@ -53,8 +53,8 @@ struct CellNumbering {
     }
     return ijk;
   }
-  /// What corner a of a cell has to add to the number of the cell's lowest node. Bit i of a says on which
-  /// side of the cell the corner is in direction i.
+  /// The number of corner a of a cell less that of the cell's lowest node. Bit i of a: the corner is on the
+  /// upper side of the cell in direction i.
   KOKKOS_FUNCTION int corner_offset(int a) const {
     int offset = 0;
     for (int i = 0; i < Dim; ++i)
@@ -67,7 +67,7 @@ struct CellNumbering {
     for (int i = Dim - 1; i >= 0; --i) index = index * cells[i] + ijk[i];
     return index;
   }
-  /// Which row of cells along x a cell is in.
+  /// The number of the row of cells along x that contains a cell.
   KOKKOS_FUNCTION int row_index(const Vector<Dim, int>& ijk) const {
     int row = 0;
     for (int i = Dim - 1; i > 0; --i) row = row * cells[i] + ijk[i];

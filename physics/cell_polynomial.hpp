@@ -2,15 +2,17 @@
 /// \file
 /// The multilinear basis of one cell in the monomials of its local coordinates xi in [0, 1]^Dim,
 ///   q_k(xi) = prod_(i in k) xi_i,   k = 0, ..., 2^Dim - 1,   i in k: bit i of k is set,
-/// which takes a third of the operations of the nodes' basis functions N_a where many particles share a cell:
+/// Monomials need a third of the operations of the basis functions N_a where many particles share a cell:
 /// - a nodal field is sum_a N_a f_a = sum_k c_k q_k, with c from f by differences along each direction;
-/// - a sum over particles sum_p N_a(xi_p) w_p follows from the moments sum_p q_k(xi_p) w_p by the transposed
-///   differences, and so does sum_p w_p . grad N_a from the moments of grad q_k.
-/// Differences have the round-off of the whole cell. A node whose only particle is next to its face has a
-/// mass far below that, and a velocity p_a / m_a that is none. Mass and momentum are therefore summed with
-/// N_a itself (CornerFunctions): terms of one sign, right to round-off at every node. So are the increments
-/// of particles, for the acceleration f_a / m_a of such a node is as large as its N_a is small. T is a
-/// number, or a pack with a cell in every lane.
+/// - a sum over particles, sum_p w_p N_a(xi_p), follows from the moments sum_p w_p q_k(xi_p) by the
+/// transposed
+///   differences; sum_p w_p . grad N_a(xi_p) follows from the moments of grad q_k.
+///
+/// Differences have the round-off of the whole cell. The mass m_a of a node can be below that, where its only
+/// particle is near the opposite face of the cell; then p_a / m_a would be wrong. Mass and momentum are
+/// therefore summed with N_a itself (CornerFunctions): terms of one sign, exact to round-off at every node.
+/// The increments of particles are interpolated with N_a too, since the acceleration f_a / m_a of such a node
+/// is as large as its N_a is small. T is a number, or a pack with a cell in every lane.
 #pragma once
 
 #include <vsb/views/static_for.hpp>
@@ -119,7 +121,7 @@ struct CornerFunctions {
   }
 };
 
-/// The monomials; q_0 = 1 stands for itself and is best not multiplied with.
+/// The monomials; q_0 = 1 is stored, but sums need no product with it.
 template <int Dim, class T>
 KOKKOS_FORCEINLINE_FUNCTION CellPolynomial<Dim, T> monomials(const Vector<Dim, T>& xi) {
   CellPolynomial<Dim, T> q;
@@ -147,7 +149,7 @@ KOKKOS_FORCEINLINE_FUNCTION void add_moments(CellPolynomial<Dim, T>& m, T w, con
   });
 }
 
-/// The same from the monomials at hand, for several w.
+/// The same from computed monomials, for several w.
 template <int Dim, class T>
 KOKKOS_FORCEINLINE_FUNCTION void add_moments_of(CellPolynomial<Dim, T>& m, T w,
                                                 const CellPolynomial<Dim, T>& q) {
@@ -171,8 +173,8 @@ KOKKOS_FORCEINLINE_FUNCTION void add_gradient_moments(CellPolynomial<Dim, T>& m,
   });
 }
 
-/// The moments sum_p w_p (c . grad q_k) of a constant c from the moments m_k = sum_p w_p q_k, which need not
-/// include that of all directions: another sum over the same particles without another look at them.
+/// The moments sum_p w_p (c . grad q_k) of a constant c from the moments m_k = sum_p w_p q_k. m of all
+/// directions is not needed.
 template <int Dim, class T>
 KOKKOS_FORCEINLINE_FUNCTION CellPolynomial<Dim, T> gradient_moments(const Vector<Dim, T>& c,
                                                                     const CellPolynomial<Dim, T>& m) {
@@ -200,8 +202,9 @@ KOKKOS_FORCEINLINE_FUNCTION CellPolynomial<Dim, T> gradient_moments_along(T c,
   return g;
 }
 
-/// The moments of a weight with the monomials, and with one direction squared: m[k] of q_k, square[j][k] of
-/// xi_j^2 q_k, k without j and of at most Dim - 2 directions. A weight that varies linearly needs no more.
+/// The moments of a weight, m[k] = sum_p w_p q_k and, with one direction squared, square[j][k] = sum_p w_p
+/// xi_j^2 q_k, for k without j and of at most Dim - 2 directions. A stress that varies linearly needs no
+/// others.
 template <int Dim, class T>
 struct SecondMoments {
   CellPolynomial<Dim, T> m, square[Dim];
@@ -216,7 +219,7 @@ struct SecondMoments {
     add_moments<Dim>(m, w, xi);
     if constexpr (Dim > 1) static_for<Dim>([&](auto j) VSB_UNROLLED { add_square<j>(w, xi); });
   }
-  /// As far as a weight needs it that varies along direction j alone.
+  /// The moments that a stress needs that varies along direction j alone.
   template <int j>
   KOKKOS_FORCEINLINE_FUNCTION void add_along(T w, const Vector<Dim, T>& xi) {
     add_moments<Dim>(m, w, xi);

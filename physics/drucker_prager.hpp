@@ -14,8 +14,8 @@
 
 namespace vsb {
 
-/// Where the cone touches the Mohr-Coulomb pyramid: its outer edges (triaxial compression), its inner edges
-/// (triaxial extension), or so that both collapse at the same load in plane strain.
+/// How the cone fits the Mohr-Coulomb pyramid: it touches the outer edges (triaxial compression), the inner
+/// edges (triaxial extension), or gives the same collapse load in plane strain.
 enum class DruckerPragerCone { outer, inner, plane_strain };
 
 /// What a Drucker-Prager material is made from; angles in radians.
@@ -24,7 +24,7 @@ struct DruckerPragerConstants {
   double cohesion;               ///< c, Pa
   double friction_angle = 0;     ///< phi
   double dilation_angle = 0;     ///< psi
-  double hardening_modulus = 0;  ///< H, Pa: what the cohesion gains per kappa
+  double hardening_modulus = 0;  ///< H, Pa: increase of the cohesion per kappa
   DruckerPragerCone cone = DruckerPragerCone::outer;
 };
 
@@ -102,13 +102,14 @@ struct DruckerPrager {
     const Real hardening = cohesion_factor * cohesion_factor * hardening_modulus;
     const Real beyond = J + friction * mean - strength(kappa);
     if (!(beyond > 0)) return;
-    // The share of the deviator that goes, and the mean stress that goes.
+    // The decrease of the deviator, as a share, and of the mean stress.
     Real multiplier = beyond / (G + K * friction * dilation + hardening);
     Real share = G * multiplier / J, mean_excess = K * dilation * multiplier;
     if (!(G * multiplier <= J)) {  // the apex: friction (mean - K dilation multiplier) = strength
       share = 1;
-      multiplier = dilation > 0 ? (friction * mean - strength(kappa)) / (K * friction * dilation + hardening)
-                                : J / G;  // the flow does not lead there; hardening by the deviator alone
+      multiplier = dilation > 0
+                       ? (friction * mean - strength(kappa)) / (K * friction * dilation + hardening)
+                       : J / G;  // the flow direction misses the apex; hardening by the deviator alone
       mean_excess = mean - strength(kappa + cohesion_factor * multiplier) / friction;
     }
     kappa += cohesion_factor * multiplier;

@@ -8,25 +8,25 @@
 
 namespace vsb {
 
-/// In rate form, where the stress is modulus ln l.
+/// Material in rate form: the stress is modulus ln l.
 template <class T>
 struct ExactColumn {
   T traction;  ///< at the free end, Pa, positive in compression
   T modulus;   ///< in uniaxial strain, Pa (Young's modulus for Poisson ratio 0)
 
-  /// Axial Cauchy stress (A2), Pa, tension positive.
+  /// Axial Cauchy stress, Eq. (A2), Pa, tension positive.
   KOKKOS_FUNCTION T stress() const { return -traction; }
 
   /// Displacement of the particle that was at x0, m: the logarithmic strain ln(1 + u / x0) is -traction /
   /// modulus.
   KOKKOS_FUNCTION T displacement(T x0) const { return x0 * math::expm1(-traction / modulus); }
 
-  /// (A1) as printed, with the sign of a shortening. It differs from the exact one by (traction / modulus)^3
-  /// / 6 x0.
+  /// Eq. (A1) as printed, with the sign of a shortening. It differs from the exact displacement by
+  /// (traction / modulus)^3 / 6 x0.
   KOKKOS_FUNCTION T displacement_as_printed(T x0) const { return -x0 * math::log1p(traction / modulus); }
 };
 
-/// Of Hencky's law, where the stress is modulus ln l / l. In tension that has a limit: modulus / e.
+/// Hencky's law: the stress is modulus ln l / l. In tension it has the limit modulus / e.
 template <class T>
 struct ExactHenckyColumn {
   T traction;  ///< at the free end, Pa, positive in compression; >= -modulus / e

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Exact solution of the internally pressurised thick-walled cylinder in plane strain (A3)-(A5), about the
-/// origin.
+/// Exact solution of the internally pressurised thick-walled cylinder in plane strain about the origin,
+/// Eq. (A3), Eq. (A4), Eq. (A5).
 #pragma once
 
 #include <vsb/physics/polar.hpp>
@@ -16,12 +16,12 @@ struct ExactCylinder {
   T youngs_modulus;  ///< E, Pa
   T poisson_ratio;   ///< nu
 
-  /// u_r (A3), m.
+  /// u_r, Eq. (A3), m.
   KOKKOS_FUNCTION T radial_displacement(T r) const {
     const T b_r = outer_radius / r;
     return (1 + poisson_ratio) / youngs_modulus * scale() * r * ((1 - 2 * poisson_ratio) + b_r * b_r);
   }
-  /// sigma_rr (A4) and sigma_tt (A5), Pa, tension positive.
+  /// sigma_rr, Eq. (A4), and sigma_tt, Eq. (A5), Pa, tension positive.
   KOKKOS_FUNCTION PolarStress<T> stress(T r) const {
     const T b_r = outer_radius / r;
     return {scale() * (1 - b_r * b_r), scale() * (1 + b_r * b_r), T(0)};

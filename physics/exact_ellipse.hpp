@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Exact stress in an infinite plate with a pressurised elliptic hole under far-field stress, plane strain
-/// (A6)-(A12). The hole is centred at the origin with its major axis along x.
+/// Exact stress in an infinite plate with a pressurised elliptic hole under far-field stress, plane strain,
+/// Eq. (A6) to Eq. (A12). The hole is centred at the origin with its major axis along x.
 #pragma once
 
 #include <Kokkos_Complex.hpp>
@@ -21,13 +21,13 @@ struct ExactEllipse {
   /// Stress at a point outside the hole, Pa, tension positive.
   KOKKOS_FUNCTION SymmetricTensor<2, T> stress(const Vector<2, T>& x) const {
     using Complex = Kokkos::complex<T>;
-    const T R = (semi_major + semi_minor) / 2;                          // (A7)
-    const T m = (semi_major - semi_minor) / (semi_major + semi_minor);  // (A8)
+    const T R = (semi_major + semi_minor) / 2;                          // Eq. (A7)
+    const T m = (semi_major - semi_minor) / (semi_major + semi_minor);  // Eq. (A8)
     const T K = far_ratio, s0 = far_stress, p = pressure;
     const Complex one(T(1));
 
-    // zeta inside the unit disk with m zeta^2 - (z / R) zeta + 1 = 0, from (A6): the smaller of the two
-    // roots, whose product is 1 / m; this form also serves m = 0.
+    // zeta inside the unit disk with m zeta^2 - (z / R) zeta + 1 = 0, from Eq. (A6): the smaller of the two
+    // roots, whose product is 1 / m. This form is valid for m = 0 too.
     const Complex z(x[0] / R, x[1] / R);
     const Complex root = Kokkos::sqrt(z * z - Complex(4 * m));
     const Complex sum = z + root, difference = z - root;
@@ -37,12 +37,12 @@ struct ExactEllipse {
     const T rho2 = norm2(zeta);
     const Complex denominator = m * z2 - one;
 
-    // (A11): sigma_xx + sigma_yy
+    // Eq. (A11): sigma_xx + sigma_yy
     const Complex trace_part =
         (-4 * p * m * z2 + s0 * (Complex(1 + K) + K * (m - 2) * z2 + (m + 2) * z2)) / (T(4) * denominator);
     const T trace_sum = 4 * trace_part.real();
 
-    // (A12): sigma_yy - sigma_xx + 2 i sigma_xy
+    // Eq. (A12): sigma_yy - sigma_xx + 2 i sigma_xy
     const Complex cube = denominator * denominator * denominator;
     const Complex hole = (1 + m * m) * (one + m * z2) * z2 / cube;
     const Complex deviator =

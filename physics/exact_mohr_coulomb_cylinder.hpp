@@ -9,7 +9,7 @@
 ///   sigma_rr = c cot(phi) - (p + c cot(phi)) (a / r)^beta,   beta = 2 sin(phi) / (1 + sin(phi)),
 /// and outside it there is the elastic cylinder of inner radius rho, which is about to yield under
 ///   q(rho) = c cos(phi) (b^2 / rho^2 - 1) / (b^2 / rho^2 + sin(phi)).
-/// The dilation angle does not matter to the stresses.
+/// The stresses do not depend on the dilation angle.
 #pragma once
 
 #include <vsb/physics/polar.hpp>
@@ -34,7 +34,7 @@ struct ExactMohrCoulombCylinder {
   /// rho, m; the inner radius below the yield pressure, the outer one beyond the collapse pressure.
   T plastic_radius() const {
     T low = inner_radius, high = outer_radius;
-    while (true) {  // what it takes to yield up to a radius grows with the radius
+    while (true) {  // the pressure at which yield extends to a radius grows with the radius
       const T middle = low + (high - low) / 2;
       if (!(middle > low && middle < high)) return pressure <= yield_pressure() ? inner_radius : high;
       (pressure_to_yield_up_to(middle) < pressure ? low : high) = middle;
@@ -54,8 +54,8 @@ struct ExactMohrCoulombCylinder {
     return {scale * (1 - b * b), scale * (1 + b * b), T(0)};
   }
 
-  /// The pressure beyond which sigma_zz would be the largest principal stress at the hole, and all this would
-  /// no longer hold, Pa; infinite where there is none.
+  /// The pressure beyond which sigma_zz would be the largest principal stress at the hole, so that this
+  /// solution is not valid, Pa; infinite where there is none.
   T largest_pressure() const {
     const T sine = math::sin(friction_angle), nu = poisson_ratio;
     const T share = (1 - nu) * (1 - sine) - nu * (1 + sine);

@@ -17,9 +17,9 @@ KOKKOS_FORCEINLINE_FUNCTION typename Pack<Real, W>::Mask has_mass(Pack<Real, W> 
   return m >= Pack<Real, W>(math::smallest_normal<Real>);
 }
 
-/// Cundall's local damping of one force component: f <- f - alpha |f| sign(v). It acts on the unbalanced
-/// force, so it vanishes in equilibrium; it is not Galilean invariant, so never use it on a body that moves
-/// as a whole.
+/// Cundall's local damping of one force component: f <- f - alpha |f| sign(v). It is proportional to the
+/// unbalanced force, and vanishes in equilibrium. It is not Galilean invariant: never use it on a body that
+/// moves as a whole.
 template <class T>
 KOKKOS_INLINE_FUNCTION T cundall_damped(T force, T velocity, T alpha) {
   const T drag = alpha * math::abs(force);

@@ -2,10 +2,10 @@
 /// \file
 /// Isotropic Hencky (logarithmic) elasticity from the deformation gradient F:
 ///   F <- (I + dt L) F,   eps = 1/2 ln(F F^T),   J = det F,   J sigma = lambda tr(eps) I + 2 mu eps.
-/// The stress is a function of the deformation: a rotation or a closed path of deformation leaves none, which
-/// the rate form does not give. In plane strain F33 = 1.
+/// The stress is a function of the deformation: a rotation or a closed path of deformation leaves no stress.
+/// In rate form it leaves some. In plane strain F33 = 1.
 ///
-/// What is kept is H = F - I, and what is decomposed is F F^T - I = H + H^T + H H^T: small strains have all
+/// The state is H = F - I, and the decomposed tensor F F^T - I = H + H^T + H H^T. Small strains keep all
 /// their digits, and a state of zeros is undeformed.
 #pragma once
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// A logically regular grid of multilinear cells with its nodes at any place, such as a graded or a polar
-/// one.
+/// A logically regular grid of multilinear cells with nodes at arbitrary positions, such as a graded or a
+/// polar one.
 ///
-/// The cell that contains a point is found by bisection along each axis where the grid is rectilinear, and
-/// else by a walk: a uniform raster over the grid's bounding box names a cell nearby; as long as the point
-/// lies beyond a face of the cell, the walk goes on in that direction, in strides that double until one is
-/// too long, and are halved from then on. Either looks at a number of cells that grows as the logarithm of
-/// those along an axis, however graded the grid. The answer depends on nothing but the point, so that all
-/// kernels of a step agree about it.
+/// In a rectilinear grid the cell that contains a point is found by bisection along each axis. In others it
+/// is found by a walk. A uniform raster over the grid's bounding box gives a first cell near the point. As
+/// long as the point lies beyond a face of the cell, the walk goes on in that direction. Its strides double
+/// until one is too long, and are halved from then on. Both searches visit a number of cells that grows as
+/// the logarithm of the cells along an axis. The result depends on the point alone, so that all kernels of a
+/// step find the same cell.
 #pragma once
 
 #include <vsb/physics/multilinear.hpp>
@@ -24,12 +24,12 @@ struct MappedGrid : CellNumbering<Dim> {
   using real = Real;
 
   const Real* position;           ///< [node][Dim], m
-  const int* start_cell;          ///< [raster cell]: where a walk to a point of it starts
+  const int* start_cell;          ///< [raster cell]: the first cell of a walk to a point in it
   UniformGrid<Dim, Real> raster;  ///< covers the bounding box
   bool rectilinear;               ///< coordinate i of a node depends on its number along axis i alone
   Real tolerance;                 ///< how far outside [0, 1] round-off may take local coordinates
 
-  /// Where a node is, m.
+  /// The position of a node, m.
   KOKKOS_FUNCTION Vector<Dim, Real> node_position(int node) const {
     Vector<Dim, Real> x;
     for (int i = 0; i < Dim; ++i) x[i] = position[node * Dim + i];
@@ -41,7 +41,7 @@ struct MappedGrid : CellNumbering<Dim> {
     for (int a = 0; a < this->corners; ++a) c.corner[a] = node_position(lowest + this->corner_offset(a));
     return c;
   }
-  /// The place with local coordinates xi in [0, 1]^Dim of a cell.
+  /// The point with local coordinates xi in [0, 1]^Dim of a cell.
   KOKKOS_FUNCTION CellPoint<Dim, Real> map(const Vector<Dim, int>& ijk, const Vector<Dim, Real>& xi) const {
     const auto at = cell(ijk).at(xi);
     return {at.x, determinant(at.J)};
@@ -55,8 +55,8 @@ struct MappedGrid : CellNumbering<Dim> {
     bool found;
   };
 
-  /// Where x lies; not found outside the grid and at NaN. A point on a face belongs to one of its cells, and
-  /// round-off outside the grid counts as inside.
+  /// The cell and local coordinates of x; not found outside the grid and at NaN. A point on a face belongs to
+  /// one of its cells. A point outside the grid by round-off counts as inside.
   KOKKOS_FUNCTION Place locate(const Vector<Dim, Real>& x) const {
     if (!raster.contains(x)) return {Vector<Dim, int>::zero(), Vector<Dim, Real>::zero(), false};
     if (rectilinear) return bisect(x);
@@ -90,13 +90,13 @@ struct MappedGrid : CellNumbering<Dim> {
   KOKKOS_FUNCTION Place walk(const Vector<Dim, Real>& x) const {
     return walk(x, start_cell[raster.cell_index(raster.cell_containing(x))]);
   }
-  /// From a given cell. Not found where the walk is stopped by a face of the grid, or goes in circles: cells
-  /// far from rectangles may do that, and points outside.
+  /// From a given cell. Not found where the walk ends at a face of the grid, or goes in circles. This happens
+  /// for points outside the grid, and in cells that are far from rectangles.
   KOKKOS_FUNCTION Place walk(const Vector<Dim, Real>& x, int start) const {
     Place place{this->cell_ijk(start), Vector<Dim, Real>::zero(), false};
     auto stride = Vector<Dim, int>::zero();  // the last one along an axis; negative: backwards
     bool halve[Dim] = {};                    // whether one was too long
-    int most_hops = 0;                       // many more than a walk that gets there takes
+    int most_hops = 0;                       // a bound far above the steps of a walk that succeeds
     for (int i = 0; i < Dim; ++i)
       for (int n = cells[i]; n > 0; n /= 2) most_hops += 8;
     for (int hop = 0; hop <= most_hops; ++hop) {
@@ -126,7 +126,7 @@ struct MappedGrid : CellNumbering<Dim> {
     return place;
   }
 
-  /// The first of all cells that contains x: for the few points that a walk does not find.
+  /// Tests all cells for x, for the few points that a walk does not find.
   KOKKOS_FUNCTION Place search(const Vector<Dim, Real>& x) const {
     Place place{Vector<Dim, int>::zero(), Vector<Dim, Real>::zero(), false};
     for (int n = 0; n < this->cell_count(); ++n) {

@@ -3,14 +3,15 @@
 /// The materials and volume updates a body can choose from; the choice is made once per launch of a kernel,
 /// by visiting.
 ///
-/// A material says with state_size<Dim>() how many numbers it remembers per particle beside the stress. Where
-/// that is none, it advances (stress, L, dt) to the stress at the end of the step; else (stress, state, L,
-/// dt), and changes the state. A state of zeros is that of a particle without stress and deformation. At
-/// small strain around that state every material is a linear elastic one, small_strain_law().
+/// state_size<Dim>() is the number of state variables of a material per particle beside the stress. Without
+/// any, advance(stress, L, dt) returns the stress at the end of the step; else advance(stress, state, L, dt)
+/// does, and changes the state. A state of zeros is that of a particle without stress and deformation. At
+/// small strain around that state every material is linear elastic, small_strain_law().
 ///
-/// A `plastic` material's state begins with its plastic strain, in the order of SymmetricTensor; hardening
-/// variables follow. It is made of an elastic law for the trial stress, `elastic`, of a test that needs no
-/// branches and may be too strict, may_yield(trial, state), and of return_stress(stress, state).
+/// The state of a `plastic` material begins with its plastic strain, in the order of SymmetricTensor;
+/// hardening variables follow. Such a material has an elastic law for the trial stress, `elastic`; a test
+/// without branches, may_yield(trial, state), which is false only for elastic states; and
+/// return_stress(stress, state).
 #pragma once
 
 #include <variant>

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Against volumetric locking: the divergence theta_p = tr L_p that strains a particle gives way to a mean
-/// thetabar_p over its neighbours,
+/// Against volumetric locking: a mean thetabar_p over neighbouring particles replaces the divergence
+/// theta_p = tr L_p of a particle,
 ///   L_p <- L_p + (beta / Dim) (thetabar_p - theta_p) I,
 ///   thetabar_p = sum_c M_c(x_p) theta_c,   theta_c = sum_p V_p M_c(x_p) theta_p / sum_p V_p M_c(x_p),
-/// with functions M_c >= 0 whose sum is 1. The mean is symmetric in the product sum_p V_p a_p b_p and never
-/// increases it, so the force stays as it is, a stiffness symmetric, and the stable time step at least as
-/// long.
+/// with functions M_c >= 0 whose sum is 1. The mean is symmetric in the product sum_p V_p a_p b_p and does
+/// not increase it. Hence the expression of the nodal force is not changed, a stiffness stays symmetric, and
+/// the stable time step does not become shorter.
 ///
-/// For functions with one cell as support M_c is 1 in cell c: a mean per cell. For functions around the
-/// nearest node it is the multilinear function around the centre of cell c. Means over cells, dual cells or
-/// blocks of cells are many times less accurate there, wherever the mean stress varies.
+/// For bases with one cell as support M_c is 1 in cell c: a mean per cell. For bases around the nearest node
+/// M_c is the multilinear function around the centre of cell c. With these bases means over cells, dual cells
+/// or blocks of cells are many times less accurate where the mean stress varies.
 #pragma once
 
 #include <vsb/physics/cell_basis.hpp>
@@ -24,8 +24,9 @@ enum class Volumetric {
   averaged  ///< the mean
 };
 
-/// beta. Elastic: lambda tr(eps) alone takes the mean, beta (lambda + 2 mu / Dim) = lambda; where lambda is
-/// not positive nothing does. Plastic: all, since plastic flow is incompressible at any Poisson ratio.
+/// beta, the share of the divergence that the mean replaces. Elastic: the mean enters lambda tr(eps) alone,
+/// so that beta (lambda + 2 mu / Dim) = lambda; 0 where lambda is not positive. Plastic: 1, since plastic
+/// flow is incompressible at any Poisson ratio.
 template <int Dim, class Material>
 auto averaged_share(const Material& material) {
   const auto elastic = material.small_strain_law();
@@ -75,14 +76,14 @@ struct CellMeans {
 /// cells beyond a wall are mirror images of those inside, so between a wall and the first centre that one is
 /// constant.
 ///
-/// Functions that find little volume, at slivers of a body, would mean over a particle or two: the largest of
-/// their neighbours takes them in.
+/// A function with little particle volume, at a sliver of a body, would give a mean over one or two
+/// particles. It is merged into the largest of its neighbours.
 template <int Dim, class Real>
 struct CentreMeans {
   static constexpr int support = 1 << Dim;
-  /// Share of a cell's volume below which a function goes to a neighbour.
+  /// Share of a cell's volume below which a function is merged into a neighbour.
   static constexpr Real least_fill = Real(0.1);
-  /// Share of the largest neighbour's volume from which on a neighbour is as good a place to go.
+  /// Share of the largest neighbour's volume from which on a neighbour counts as equally large.
   static constexpr Real about_as_large = Real(0.95);
 
   UniformGrid<Dim, Real> grid;  ///< with its ghost layer
@@ -114,7 +115,7 @@ struct CentreMeans {
     }
     return shape;
   }
-  /// theta_c of the function that c went to, or of c with those that came to it.
+  /// theta_c of the function that c is merged into, or of c and the functions merged into it.
   template <class Sums>
   KOKKOS_FUNCTION Real mean(int c, const Sums& sums) const {
     const auto volume = [&](const Vector<Dim, int>& cell) { return sums(grid.node_index(cell), 0); };
@@ -132,10 +133,11 @@ struct CentreMeans {
   /// m^Dim
   KOKKOS_FUNCTION Real least_volume() const { return least_fill * grid.cell_volume(); }
   KOKKOS_FUNCTION bool is_small(Real volume) const { return volume > Real(0) && volume < least_volume(); }
-  /// The function that takes in that of a cell: the largest neighbour, and of those about as large the
-  /// nearest; itself where it is not small, or all its neighbours are. volume(cell) is that of a function.
+  /// The function that the function of a cell is merged into: the nearest of the equally large largest
+  /// neighbours. The function itself where it is not small, or where all its neighbours are. volume(cell):
+  /// the volume of a function.
   ///
-  /// Along a straight surface neighbours are equal but for round-off, which must not choose.
+  /// Along a straight surface neighbours differ by round-off alone, which must not decide.
   template <class Volume>
   KOKKOS_FUNCTION Vector<Dim, int> home_of(const Vector<Dim, int>& cell, const Volume& volume) const {
     if (!is_small(volume(cell))) return cell;

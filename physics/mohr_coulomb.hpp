@@ -49,7 +49,7 @@ struct MohrCoulomb {
     f.sin_dilation = static_cast<Real>(std::sin(m.dilation_angle));
     f.strength = static_cast<Real>(2 * m.cohesion * cosine);
     f.apex = m.friction_angle > 0 ? static_cast<Real>(m.apex()) : std::numeric_limits<Real>::infinity();
-    // Beyond the apex a cut-off cuts nothing off.
+    // A cut-off beyond the apex has no effect.
     f.tensile_strength = m.tensile_strength < m.apex() * (1 - 1e-6) ? static_cast<Real>(m.tensile_strength)
                                                                     : std::numeric_limits<Real>::infinity();
     // f / 2 = sqrt(J2) (cos(theta) - sin(theta) sin(phi) / sqrt(3)) + sigma_m sin(phi) - c cos(phi) has its

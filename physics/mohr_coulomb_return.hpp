@@ -42,7 +42,7 @@ struct MohrCoulombSurface {
          solve<3>(trial, {main, tension_1, tension_2}, s) || solve<3>(trial, {main, left, tension_1}, s) ||
          solve<3>(trial, {tension_1, tension_2, tension_3}, s)))
       return s;
-    // The apex, also where the flow directions do not lead there (psi = 0): no other state is admissible.
+    // The apex, also where no flow direction leads to it (psi = 0): no other state is admissible.
     const Real vertex = math::min(apex, tensile_strength);
     return vertex < math::infinity<Real> ? Vector<3, Real>{{vertex, vertex, vertex}} : trial;
   }
@@ -69,7 +69,7 @@ struct MohrCoulombSurface {
     return p;
   }
 
-  /// The stress with the planes of a set active; whether it is the one sought.
+  /// The stress with the planes of a set active. Returns whether it satisfies all conditions.
   template <int Count>
   KOKKOS_FUNCTION bool solve(const Vector<3, Real>& trial, const int (&set)[Count],
                              Vector<3, Real>& s) const {

@@ -32,9 +32,9 @@ KOKKOS_FORCEINLINE_FUNCTION void multilinear(const Vector<Dim, T>& xi, const Vec
   }
 }
 
-/// A local coordinate in [0, 1], kept off the faces of its cell by round-off. A particle on a face would
-/// bring no mass to the nodes across the cell, N_a = 0, where grad N_a is not zero: its force there would be
-/// lost, and its velocity gradient would see nodes at rest ahead of a body that moves.
+/// A local coordinate in [0, 1], moved off the faces of its cell by round-off. A particle on a face adds no
+/// mass to the nodes on the opposite face, N_a = 0, but grad N_a is not zero there. Its force at these nodes
+/// would be lost, and its velocity gradient would be wrong, since nodes without mass are at rest.
 template <class T>
 KOKKOS_FORCEINLINE_FUNCTION T off_the_faces(T xi) {
   return math::min(math::max(xi, math::epsilon<T>), T(1) - T(0.5) * math::epsilon<T>);
@@ -80,14 +80,14 @@ struct MultilinearCell {
     return sum / T(corners);
   }
 
-  /// Local coordinates of x; where they did not converge, the point is outside and they tell in which
-  /// direction.
+  /// Local coordinates of x. Without convergence the point is outside the cell, in the direction of the
+  /// coordinates.
   struct Inverse {
     Vector<Dim, T> xi;
     bool converged;
   };
-  /// Newton's method from the centre. Iterates are kept in the cell, where J is regular; it ends when one no
-  /// longer moves, that is, when x lies beyond a face.
+  /// Newton's method from the centre. Iterates are limited to the cell, where J is regular. An iterate that
+  /// no longer moves shows that x lies beyond a face.
   KOKKOS_FORCEINLINE_FUNCTION Inverse inverse(const Vector<Dim, T>& x) const {
     constexpr int most_iterations = 32;
     Vector<Dim, T> c[corners];

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// What bases whose support is the 3^Dim nodes around the nearest one have in common: bins, and the product
-/// of the functions of each direction. A bin is the dual cell of a node, the points nearest to it, and
-/// carries that node's number.
+/// Bins and tensor products of bases whose support nodes are the 3^Dim nodes around the nearest one. A bin is
+/// the dual cell of a node, the points nearest to it, with the number of that node.
 ///
-/// Points lie at least one cell away from the faces of `grid`: its outermost layer of cells are ghost cells,
+/// Points lie at least one cell away from the faces of `grid`. Its outermost layer of cells are ghost cells,
 /// which with_ghost_layer adds to the grid of a scene. At a wall the nodes of this layer are mirror images
 /// (see kernels/particles/mirror_nodes.hpp), so that fixed planes and planes of symmetry are exact.
 #pragma once
@@ -32,8 +31,8 @@ struct NodeTriple {
   T N[3], dN[3];
 };
 
-/// The products of one function of every direction. Digit i of a, to the base 3, is the node's place in
-/// direction i.
+/// The products of one function of every direction. Digit i of a, to the base 3: the node is below, at or
+/// above the nearest node in direction i.
 template <int Dim, int Support, class T>
 KOKKOS_FORCEINLINE_FUNCTION void multiply_triples(const NodeTriple<T> (&f)[Dim], Shape<Dim, Support, T>& s) {
   for (int a = 0; a < Support; ++a) {

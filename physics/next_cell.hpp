@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// From cell to cell of a uniform grid: for what keeps its cell and its place xi there, off the cell's faces
-/// (physics/multilinear.hpp).
+/// From cell to cell of a uniform grid, for points that are stored as a cell and the local coordinates xi in
+/// it, off the cell's faces (physics/multilinear.hpp).
 #pragma once
 
 #include <vsb/physics/multilinear.hpp>
@@ -9,10 +9,10 @@
 
 namespace vsb {
 
-/// The cell in which a place is that lies at xi of `cell`, and its xi there; whether that is another cell
-/// than before. Round-off at a face of the grid counts as inside, as everywhere (UniformGrid::contains). What
-/// is not finite, or nowhere near, gets a cell outside the grid. Places may not come nearer than `margin`
-/// cells to the faces of the grid; those that do get a cell outside it too.
+/// Moves a point with local coordinates xi of `cell`, which may lie outside [0, 1], to the cell that contains
+/// it. Returns whether that is another cell. A point outside the grid by round-off counts as inside, as
+/// everywhere (UniformGrid::contains). Points that are not finite, or too far from the cell, get a cell
+/// outside the grid, and so do points closer than `margin` cells to a face of the grid.
 template <int Dim, class Real>
 KOKKOS_INLINE_FUNCTION bool to_next_cell(const UniformGrid<Dim, Real>& grid, Vector<Dim, int>& cell,
                                          Vector<Dim, Real>& xi, Real margin = 0) {
@@ -48,7 +48,7 @@ KOKKOS_INLINE_FUNCTION bool to_next_cell(const UniformGrid<Dim, Real>& grid, Vec
                above = cell[i] == last && xi[i] > 1 - margin + round_off;
     if (!below && !above) continue;
     out = true;
-    cell[i] += above ? 1 : -1;  // the place stays what it is
+    cell[i] += above ? 1 : -1;  // the position does not change
     xi[i] += above ? Real(-1) : Real(1);
   }
   return out;

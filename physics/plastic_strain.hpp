@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The plastic strain tensor that a material remembers, and its measure (34). Shear components are those of
-/// the tensor, half the engineering shear.
+/// The plastic strain tensor in the state of a material, and its measure, Eq. (34). Shear components are
+/// those of the tensor, half the engineering shear.
 #pragma once
 
 #include <vsb/physics/kinematics.hpp>
@@ -9,7 +9,7 @@
 
 namespace vsb {
 
-/// eps_q = sqrt(2/3 e : e), e = eps - tr(eps) / 3 I (34).
+/// eps_q = sqrt(2/3 e : e), e = eps - tr(eps) / 3 I, Eq. (34).
 template <int Dim, class T>
 KOKKOS_INLINE_FUNCTION T equivalent_plastic_deviatoric_strain(const SymmetricTensor<Dim, T>& plastic_strain) {
   const T mean = (plastic_strain[0] + plastic_strain[1] + plastic_strain[2]) / T(3);
@@ -29,17 +29,16 @@ KOKKOS_FORCEINLINE_FUNCTION SymmetricTensor<Dim, T> plastic_strain_in(const Vect
   return e;
 }
 
-/// Turns the plastic strain with the material, as the Jaumann rate turns the stress: increments of different
-/// steps are added up in axes that belong to the material, so that a body that has rotated on the way has the
-/// plastic strain of one that has not.
+/// Turns the plastic strain with the material, as the Jaumann rate turns the stress. The increments of all
+/// steps are then sums in axes of the material, and a rotation of the body does not change their measure.
 template <int Dim, int N, class T>
 KOKKOS_FORCEINLINE_FUNCTION void turn_plastic_strain(Vector<N, T>& state, const Matrix<Dim, T>& L, T dt) {
   const auto turned = turned_with_material(plastic_strain_in<Dim>(state), L, dt);
   for (int c = 0; c < turned.size; ++c) state[c] = turned[c];
 }
 
-/// Takes what a trial stress has too much: sigma = sigma_trial - excess, and the plastic strain grows by C^-1
-/// : (sigma_trial - sigma).
+/// Removes the excess of a trial stress: sigma = sigma_trial - excess, and the plastic strain grows by
+/// C^-1 : (sigma_trial - sigma).
 template <int Dim, int N, class Real>
 KOKKOS_FUNCTION void release(const LinearElastic<Real>& elastic, const SymmetricTensor<Dim, Real>& excess,
                              SymmetricTensor<Dim, Real>& stress, Vector<N, Real>& state) {

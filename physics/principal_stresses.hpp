@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Principal values and directions of a symmetric tensor in closed form, for stresses that must be taken
-/// apart at every step. In a plane that is one Jacobi rotation. In space, with the mean m, the deviator s and
+/// Principal values and directions of a symmetric tensor in closed form, for stresses that are decomposed at
+/// every step. In a plane this is one Jacobi rotation. In space, with the mean m, the deviator s and
 /// r = sqrt(J2 / 3), the values are m + r x with
 ///   x^3 - 3 x - det(s / r) = 0.
-/// The root furthest from the other two, sqrt(3) <= |x| <= 2, is a simple one, found by Newton's method; its
-/// direction is orthogonal to the rows of s / r - x I; and what is left is plane. So equal values need no
-/// care.
+/// The root furthest from the other two, sqrt(3) <= |x| <= 2, is a simple one; an iteration finds it. Its
+/// direction is orthogonal to the rows of s / r - x I. The other two are a problem in the plane orthogonal to
+/// it. Equal values need no special treatment.
 #pragma once
 
 #include <vsb/physics/elastic_cone.hpp>

@@ -4,10 +4,11 @@
 /// to it, as polynomials of local coordinates xi in [0, 1]^Dim; k = sum_i 3^i k_i, k_i = 0, 1, 2:
 /// - a nodal field is sum_k c_k r_k with c from its values by differences alone, where
 ///     r_k(xi) = prod_i (1, xi_i + 1/2, xi_i^2 / 2) [k_i];
-/// - a sum of gradients over particles follows from the moments of
+/// - a sum sum_p w_p . grad N_a(xi_p) follows from the moments sum_p w_p q_k(xi_p) of
 ///     q_k(xi) = prod_i xi_i^k_i / k_i!,   d q_k / d xi_i = q_(k - 3^i), or 0 where k_i = 0;
-/// - sums of the functions themselves are taken with these: they are of one sign, and a node with next to no
-///   mass has its sums to round-off, which differences of moments would not give.
+/// - a sum sum_p w_p N_a(xi_p) is computed with the functions N_a themselves. Its terms are of one sign, so
+/// that
+///   it is exact to round-off even at a node of little mass. Differences of moments would not be.
 /// T is a number, or a pack with a cell in every lane.
 #pragma once
 
@@ -73,7 +74,8 @@ struct Powers {
 };
 
 namespace detail {
-/// The polynomial at a place along direction i = 0, 1, 2 alone, the lowest that c has left.
+/// The polynomial at xi_i, evaluated along direction i = 0, 1, 2 alone, the lowest direction that c still
+/// has.
 template <int i, int Dim, class T, int N>
 KOKKOS_FORCEINLINE_FUNCTION Vector<N / 3, T> value_along(const Vector<N, T>& c, const Powers<Dim, T>& xi) {
   Vector<N / 3, T> v;
@@ -186,7 +188,7 @@ KOKKOS_FORCEINLINE_FUNCTION void add_product(QuadraticPolynomial<Dim, T>& sum, T
   });
 }
 
-/// The same with monomials, without those for which skip(k) holds; q_0 = 1 is not multiplied with.
+/// The same with monomials, without those for which skip(k) holds; q_0 = 1 needs no product.
 template <class Skip, int Dim, class T>
 KOKKOS_FORCEINLINE_FUNCTION void add_monomials(QuadraticPolynomial<Dim, T>& sum, T w,
                                                const TensorProduct<Dim, T>& product) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The basis functions at one point, as a value: what particles and nodes exchange data through.
+/// The basis functions at one point, as a value, by which particles and nodes exchange data.
 #pragma once
 
 #include <vsb/views/tensor.hpp>

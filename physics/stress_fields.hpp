@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// Stress fields sbar(x) with their exact divergence fbar = div sbar, one small value type each. A field need
-/// not be in equilibrium: fbar enters the nodal forces as a body force (Eq. 27). How to choose one is told in
-/// physics/fields.md.
+/// not be in equilibrium: fbar enters the nodal forces as a body force, Eq. (27). physics/fields.md explains
+/// how to choose a field.
 #pragma once
 
 #include <vsb/physics/virtual_stress.hpp>
@@ -38,9 +38,9 @@ struct AffineStress {
 /// A fluid at rest below its free surface: sbar = -gamma D I, fbar = gamma D' up. D is the depth with the
 /// kink at the free surface averaged over `width`, the particles' spacing along `up`:
 ///   D = d for d >= w/2,  (d + w/2)^2 / (2 w) for |d| < w/2,  0 for d <= -w/2,
-/// with the depth d of x. D' is then the part of the width that is under water, so that a column of particles
-/// feels the weight of just the water that it displaces. What remains is a pressure of gamma w / 8 at the
-/// free surface itself. w = 0: a kink; a particle is under water or not.
+/// with the depth d of x. D' is the part of the width that is under water. The buoyancy of a column of
+/// particles is therefore the weight of the water that it displaces. The averaging leaves a pressure of gamma
+/// w / 8 at the free surface. w = 0: no averaging; a particle is under water or not.
 template <int Dim, class T>
 struct HydrostaticStress {
   T unit_weight;      ///< gamma, N/m^3

@@ -2,8 +2,8 @@
 /// \file
 /// Principal values and directions of a symmetric tensor by Jacobi rotations, and tensors from them:
 ///   s = sum_k value_k n_k (x) n_k.
-/// Rotations are orthogonal to round-off whatever the values, so equal ones need no care, and the error of
-/// each value is round-off of the largest. In a plane one rotation is exact.
+/// Rotations are orthogonal to round-off for all values, so that equal values need no special treatment. The
+/// error of each value is round-off of the largest. In a plane one rotation is exact.
 #pragma once
 
 #include <vsb/views/tensor.hpp>
@@ -57,8 +57,7 @@ KOKKOS_INLINE_FUNCTION PrincipalValues<Dim, T> principal_values(const SymmetricT
   Matrix<Dim, T> a;
   for (int i = 0; i < Dim; ++i)
     for (int j = 0; j < Dim; ++j) a(i, j) = s(i, j);
-  // Convergence is quadratic; 4 or 5 sweeps are usual, the bound only ends the loop for values that are not
-  // finite.
+  // Convergence is quadratic, in 4 or 5 sweeps. The bound ends the loop for values that are not finite.
   constexpr int most_sweeps = Dim == 3 ? 12 : 1;
   if constexpr (Dim > 1) {
     for (int sweep = 0; sweep < most_sweeps; ++sweep) {

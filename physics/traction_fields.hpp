@@ -131,9 +131,9 @@ struct AffineVirtualStress : ActsOnParticles {
     return rest;
   }
 
-  int axis = -1;  ///< the direction along which all of them vary, and without shear; -1: they may do anything
+  int axis = -1;  ///< the one direction along which all of them vary, without shear; -1: no such direction
 
-  /// Sets `axis` where the fields are so, as the pressure of water and of soil at rest is.
+  /// Sets `axis` where there is such a direction, as for the pressure of water and of soil at rest.
   void find_axis() {
     int found = 0, axes = 0;
     bool shear = false;
@@ -193,7 +193,7 @@ struct FunctorVirtualStress : ActsOnParticles {
 
 /// The virtual stress of a function of one's own: functor(x) gives sbar and its divergence at x as a
 /// VirtualStressValue, and acts at the nodes where any traction is declared. On a device it must be callable
-/// there (KOKKOS_FUNCTION). The divergence must be that of the stress: what differs acts as a body force.
+/// there (KOKKOS_FUNCTION). The divergence must be that of the stress: a difference acts as a body force.
 template <class Functor>
 FunctorVirtualStress<Functor> virtual_stress_of(const Functor& functor) {
   return {{}, functor, ~TractionMask(0)};

@@ -33,7 +33,7 @@ struct UniformGrid : CellNumbering<Dim> {
   }
   KOKKOS_FUNCTION Real cell_volume(const Vector<Dim, int>&) const { return cell_volume(); }
 
-  /// Where a node is, m.
+  /// The position of a node, m.
   KOKKOS_FUNCTION Vector<Dim, Real> node_position(int node) const {
     const auto ijk = this->node_ijk(node);
     Vector<Dim, Real> x;
@@ -49,7 +49,7 @@ struct UniformGrid : CellNumbering<Dim> {
   }
   /// The same for one coordinate.
   KOKKOS_FUNCTION Real in_cells(Real x, int axis) const { return (x - lower[axis]) * inverse_spacing[axis]; }
-  /// The place with local coordinates xi in [0, 1]^Dim of a cell.
+  /// The point with local coordinates xi in [0, 1]^Dim of a cell.
   KOKKOS_FUNCTION CellPoint<Dim, Real> map(const Vector<Dim, int>& cell, const Vector<Dim, Real>& xi) const {
     CellPoint<Dim, Real> place{{}, cell_volume()};
     for (int i = 0; i < Dim; ++i) place.x[i] = lower[i] + (static_cast<Real>(cell[i]) + xi[i]) * spacing[i];

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Virtual stress fields sbar with their divergence fbar = div sbar (Eq. 16). A traction t on a boundary of
-/// normal n is replaced by any field with sbar . n = t there (Eq. 14); a pressure p, positive in compression,
-/// is sbar = -p I.
+/// Virtual stress fields sbar with their divergence fbar = div sbar, Eq. (16). A traction t on a boundary of
+/// normal n is replaced by any field with sbar . n = t there, Eq. (14). A pressure p, positive in
+/// compression, is sbar = -p I.
 ///
 /// What a step asks of a field: known(), the tractions that it has a stress for; on cell lanes also
 /// without(mask), the same field less some tractions.
 ///
-/// What a kernel asks of a field: `loaded` (whether particles have anything to add), `uniform` (whether it is
-/// the same everywhere), `affine` (whether it is affine in x; then sum(mask) gives it), `cell_quadrature`
-/// (whether whole cells have anything to add), acting_at(x), the tractions that may act on a particle at x,
-/// and at(x, mask), the sum over the tractions in the mask of their fields at x. A kernel calls it where a
-/// node's mask differs from that of the node before it, so that a field that differs from surface to surface
-/// switches node by node.
+/// What a kernel asks of a field: `loaded` (whether the sum over particles has a term), `uniform` (whether it
+/// is the same everywhere), `affine` (whether it is affine in x; then sum(mask) returns it),
+/// `cell_quadrature` (whether the sum over whole cells has a term), acting_at(x), the tractions that may act
+/// on a particle at x, and at(x, mask), the sum of the fields of the tractions in the mask at x. A kernel
+/// calls at() where a node's mask differs from that of the node before it: a field that differs from surface
+/// to surface is taken per node.
 #pragma once
 
 #include <stdexcept>
@@ -33,7 +33,7 @@ struct VirtualStressValue {
   }
 };
 
-/// Tractions 0, ..., count - 1. Throws std::invalid_argument for more than a field has room for.
+/// Tractions 0, ..., count - 1. Throws std::invalid_argument for more than the capacity of a field.
 inline TractionMask first_tractions(int count, int capacity) {
   if (count < 0 || count > capacity)
     throw std::invalid_argument("vsb: the `count` of a load is " + std::to_string(count) +
@@ -41,7 +41,7 @@ inline TractionMask first_tractions(int count, int capacity) {
   return count == 0 ? 0 : ~TractionMask(0) >> (32 - count);
 }
 
-/// What most fields have in common: they act on particles, and on all of them.
+/// Base of most fields: they act on particles, and on all of them.
 struct ActsOnParticles {
   static constexpr bool loaded = true, uniform = false, affine = false, cell_quadrature = false;
   template <class Position>

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Faces of the grid beyond which nodes are mirror images of the nodes inside. A basis function that reaches
-/// over a wall, and its mirror image, which reaches back, then act as one: a body with its reflection, cut in
-/// half. Velocities held at the wall are odd, v(ghost) = -v(image), the others even, v(ghost) = +v(image).
+/// Faces of the grid beyond which nodes are mirror images of the nodes inside. A basis function that extends
+/// over a wall is the sum of itself and its mirror image: the body moves as half of a body with its
+/// reflection. Velocity components prescribed at the wall are odd, v(ghost) = -v(image), the others even,
+/// v(ghost) = +v(image).
 #pragma once
 
 #include <vsb/views/masks.hpp>
@@ -12,8 +13,8 @@ namespace vsb {
 
 template <int Dim>
 struct Walls {
-  /// [direction][0: lower face, 1: upper]: bit i says that velocity component i is held at this face; a face
-  /// without any is open, and the nodes beyond it are like all others.
+  /// [direction][0: lower face, 1: upper]: bit i: velocity component i is prescribed at this face. A face
+  /// without prescribed components is open, and the nodes beyond it are like all others.
   ComponentMask fixed[Dim][2] = {};
 
   KOKKOS_FUNCTION bool mirrored(int axis, int side) const { return fixed[axis][side] != 0; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// What a whole cell under a virtual stress gives to one of its nodes (Eqs. 21, 22), by Gauss points:
+/// The force of a whole cell under a virtual stress at one of its nodes, Eq. (21), Eq. (22), by Gauss points:
 ///   sum_c V_c (sbar_c . grad N_c + N_c fbar_c).
 #pragma once
 
@@ -9,8 +9,8 @@
 
 namespace vsb {
 
-/// Adds to f what `cell` gives to its corner a, numbered as in multilinear.hpp, under the given tractions; f
-/// in N.
+/// Adds the force of `cell` at its corner a under the given tractions to f, N. Corners are numbered as in
+/// multilinear.hpp.
 template <class Basis, class Field, int Dim, class Real>
 KOKKOS_INLINE_FUNCTION void add_whole_cell(const Basis& basis, const Vector<Dim, int>& cell, int a,
                                            const Field& field, TractionMask tractions,

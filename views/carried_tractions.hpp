@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Tractions whose surface moves with the material: particles carry them, and they are declared at the nodes
-/// of the cells that hold such particles (see kernels/boundary/mark_boundary_nodes.hpp).
+/// Tractions whose surface moves with the material. Particles carry them; they are declared at the nodes of
+/// the cells that hold such particles (see kernels/boundary/mark_boundary_nodes.hpp).
 #pragma once
 
 #include <vsb/views/kokkos_compat.hpp>
@@ -32,7 +32,7 @@ struct CarriedTractions {
   }
 };
 
-/// The words for rows of cells and of nodes, unless they are there already.
+/// Allocates the words for rows of cells and of nodes, unless they are allocated already.
 template <class Device>
 void fit_carried(CarriedTractions<Device>& c, size_t cell_rows, size_t node_rows, size_t words) {
   if (!c.any() || (c.cells.extent(1) == cell_rows && c.cells.extent(2) == words)) return;

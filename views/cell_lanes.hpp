@@ -2,18 +2,18 @@
 /// \file
 /// Particles packed by cell, one cell in every lane of a pack.
 ///
-/// The cells of a row along x are taken `width` at a time, as a group. Particle number s of the cell in lane
-/// l of a group is entry (first + s) * width + l of every column; a lane that has fewer particles than the
-/// group has slots is filled up with ghosts, without mass and volume, so that the arithmetic needs no masks.
-/// Where a particle is, the group and the lane say up to the cell, and xi in [0, 1)^Dim within it.
+/// A group is `width` cells side by side in a row along x, one cell in each lane. Particle s of the cell in
+/// lane l of a group is entry (first + s) * width + l of every column. A lane with fewer particles than the
+/// group has slots is filled up with ghosts without mass and volume, so that the arithmetic needs no masks.
+/// The group and the lane give the cell of a particle; xi in [0, 1)^Dim is its position in the cell.
 ///
-/// Cells and nodes are counted within a box around the particles, so that memory and time follow the body
-/// and not the grid. A layer is all groups of one k (one j in 2D, everything in 1D); it alone writes to the
-/// lower sums of the node plane below it and to the upper sums of the plane above it, and a node's sums are
-/// the two together. One thread works on a layer, so the sums are the same for any number of threads.
+/// Cells and nodes are counted within a box around the particles, so that memory and time grow with the body
+/// and not with the grid. A layer is all groups of one k (one j in 2D, everything in 1D). It alone writes to
+/// the lower sums of the node plane below it and to the upper sums of the plane above it; the sum of a node
+/// is lower plus upper. One thread works on a layer, so that the sums are the same for any number of threads.
 ///
-/// Quadratic B-splines have the cells around the nodes for cells (CellLanes::dual): there a particle's nodes
-/// are always the same 3^Dim, and a layer writes to three node planes.
+/// With quadratic B-splines the cells of the lanes are the cells around the nodes (CellLanes::dual). All
+/// particles of such a cell have the same 3^Dim nodes, and a layer writes to three node planes.
 #pragma once
 
 #include <vsb/views/masks.hpp>
@@ -71,8 +71,8 @@ struct CellLanes {
   using Columns = Kokkos::View<Real**, Kokkos::LayoutLeft, Device>;
   using Ints = Kokkos::View<int*, Device>;
 
-  /// Where a particle's numbers are: xi, velocity in m/s, mass, volume, Cauchy stress, material state, units
-  /// as in Particles.
+  /// The columns of a particle: xi, velocity in m/s, mass, volume, Cauchy stress, material state; units as in
+  /// Particles.
   static constexpr int xi_column = 0, velocity_column = Dim, mass_column = 2 * Dim,
                        volume_column = 2 * Dim + 1, stress_column = 2 * Dim + 2,
                        state_column = 2 * Dim + 2 + stress_size;
@@ -96,7 +96,7 @@ struct CellLanes {
   int particle_count = 0;
 
   static constexpr int mass_matrix_size = Dim == 1 ? 3 : Dim == 2 ? 9 : 27;
-  /// Whether steps look at the particles once, and re-map by the mass matrices of the cells.
+  /// Whether steps re-map by the mass matrices of the cells, in one sweep over the particles.
   KOKKOS_FUNCTION bool one_sweep() const { return mass_matrices.size() > 0; }
   KOKKOS_FORCEINLINE_FUNCTION Real* mass_matrix_at(int group, int number) const {
     return mass_matrices.data() +
@@ -120,22 +120,22 @@ struct CellLanes {
     const int j = row % rows_per_layer(), k = row / rows_per_layer();
     return Dim == 3 ? (k + r / 3) * node_rows_per_plane() + j + r % 3 : k + r;
   }
-  /// Either, as cells are.
+  /// The number of node rows of a cell, and row r of them, for either kind of cells.
   KOKKOS_FUNCTION int node_rows_of_cell() const {
     return dual ? LaneStencil<Dim>::rows : LaneGroup<Dim>::corner_rows;
   }
   KOKKOS_FUNCTION int node_row_of_cell(int row, int r) const {
     return dual ? stencil_row(row, r) : node_row(row, r);
   }
-  /// The scene's node (i, j, k) that is the lowest of the box. Outermost cells are void, so dual cells need
-  /// as many nodes as others.
+  /// The lowest node (i, j, k) of the box in the scene's grid. The outermost cells are void, so that dual
+  /// cells need no more nodes than others.
   KOKKOS_FUNCTION Vector<Dim, int> lowest_node() const {
     auto node = box.first;
     if (dual)
       for (int i = 0; i < Dim; ++i) --node[i];
     return node;
   }
-  /// Node x of a row of nodes of the box; -1 where it is not kept, since no cell around it is in a group.
+  /// Node x of a row of nodes of the box; -1 where no cell around it is in a group, so that it is not stored.
   KOKKOS_FUNCTION int node_at(int node_row, int x) const {
     const int chunk = chunk_at(node_row * (groups_per_row() + 1) + x / width);
     return chunk < 0 ? -1 : chunk * width + x % width;
@@ -207,7 +207,7 @@ struct CellLanes {
     for (int s = group.first; s < group.first + group.slots; ++s) lanes |= held(s);
     return lanes;
   }
-  /// Makes an entry a ghost; the mask of its slot is left to the caller.
+  /// Makes an entry a ghost. The caller updates the mask of its slot.
   KOKKOS_FUNCTION void clear(size_t entry) const {
     for (int c = 0; c < columns(); ++c) *at(c, entry) = c < Dim ? Real(0.5) : Real(0);
     id(entry) = -1;
@@ -244,8 +244,8 @@ struct LaneNodes {
   KOKKOS_FORCEINLINE_FUNCTION P load(int column, int node) const { return P::load(at(column, node)); }
 };
 
-/// Particles on their way to another cell: copies of the slots that lost some, in the order in which their
-/// layer came to them.
+/// Migrating particles: copies of the slots that particles left, in the order in which the sweep over their
+/// layer came to the slots.
 template <int Dim, class Real, class Device>
 struct Leavers {
   static constexpr int width = Lanes<Real>::width;

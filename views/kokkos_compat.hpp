@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The one place that knows how Kokkos differs between 3.4 and 5.x.
+/// All differences between Kokkos 3.4 and 5.x that this code must know.
 #pragma once
 
 #include <Kokkos_Core.hpp>
@@ -9,7 +9,8 @@
 
 static_assert(KOKKOS_VERSION >= 30400, "vsb needs Kokkos 3.4 or newer");
 
-/// Before a function template that calls what it is given: where that is for the host alone, so is the call.
+/// Before a function template that calls its argument: with a callable for the host alone it is a host
+/// function.
 #if defined(__CUDACC__)
 #define VSB_ANY_CALLABLE _Pragma("nv_exec_check_disable")
 #else

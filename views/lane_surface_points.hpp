@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Surface points (views/surface_points.hpp) beside cell lanes: where they are, a cell and a place in it say,
-/// as of the particles there.
+/// Surface points (views/surface_points.hpp) beside cell lanes. Their position is a cell and xi in it, as
+/// that of particles in lanes.
 #pragma once
 
 #include <vsb/views/cell_lanes.hpp>
@@ -9,14 +9,14 @@
 
 namespace vsb {
 
-/// Surface points, one row each, sorted by the cells of the lanes' box. A loaded material point moves as its
-/// particle does, from the same place with the same velocities, so it need not know where the lanes keep it.
+/// Surface points, one row each, sorted by the cells of the lanes' box. A loaded material point starts at the
+/// position of its particle and moves with the same velocities. It does not need the entry of its particle.
 template <int Dim, class Real, class Device>
 struct LaneSurfacePoints {
   using Fields = Kokkos::View<Real**, Kokkos::LayoutRight, Device>;
   using Ints = Kokkos::View<int*, Device>;
   Kokkos::View<int* [Dim], Device> cell;          ///< [point][Dim], of the grid
-  Fields xi;                                      ///< [point][Dim]: place in the cell, in [0, 1)
+  Fields xi;                                      ///< [point][Dim]: position in the cell, in [0, 1)
   Fields area;                                    ///< [point][Dim]: as in SurfacePoints
   Kokkos::View<TractionMask*, Device> tractions;  ///< [point]: the tractions that act on it
   Ints carrier;                                   ///< [point]: see SurfaceCarrier

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The memory of a mapped grid: where its nodes are, and where to start looking for the cell of a point.
+/// The memory of a mapped grid: the positions of its nodes, and the first cells of the search for a point.
 #pragma once
 
 #include <vsb/views/kokkos_compat.hpp>

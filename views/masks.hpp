@@ -7,13 +7,13 @@
 
 namespace vsb {
 
-/// Bit k says that traction k acts at a node: chi_I of the paper, for up to 32 tractions.
+/// Bit k: traction k acts at a node; chi_I of the paper, for up to 32 tractions.
 using TractionMask = std::uint32_t;
 
-/// Bit i says that velocity component i is prescribed (zero) at a node.
+/// Bit i: velocity component i is prescribed (zero) at a node.
 using ComponentMask = std::uint8_t;
 
-/// Bit l says something of lane l of a pack.
+/// Bit l: a property of lane l of a pack.
 using LaneMask = std::uint32_t;
 
 }  // namespace vsb

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// What a node of the background grid carries.
+/// The fields of the nodes of the background grid.
 #pragma once
 
 #include <vsb/views/masks.hpp>
@@ -8,8 +8,8 @@
 
 namespace vsb {
 
-/// Nodal fields, one row per node. What particles scatter together lies together, a row being
-/// (mass, momentum, force); the accessors give the names.
+/// Nodal fields, one row per node. Fields that particles scatter together are stored together, in rows of
+/// (mass, momentum, force); accessors give them their names.
 template <int Dim, class Real, class Device>
 struct Nodes {
   static constexpr int dimension = Dim;

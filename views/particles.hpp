@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// What a particle carries, as a structure of arrays.
+/// The fields of the particles, as a structure of arrays.
 #pragma once
 
 #include <stdexcept>
@@ -11,7 +11,7 @@
 namespace vsb {
 
 /// A bundle of Views, one row per particle. The Views are strided, so that they wrap arrays of any layout:
-/// assign to them what `wrap` makes of one's own arrays, or take them from allocate_particles.
+/// assign to them what `wrap` makes of your own arrays, or take them from allocate_particles.
 /// Copying the bundle copies no data.
 template <int Dim, class Real, class Device>
 struct Particles {
@@ -45,7 +45,7 @@ struct Particles {
     return Scalars(first, Kokkos::LayoutStride(static_cast<size_t>(particles), static_cast<size_t>(stride)));
   }
 
-  /// By their positions: all that the boundary is marked by.
+  /// The rows of `position`: marking the boundary needs no other field.
   KOKKOS_FUNCTION int count() const { return static_cast<int>(position.extent(0)); }
 
   template <int N>
@@ -80,7 +80,7 @@ struct Particles {
   }
 
  private:
-  /// Throws std::invalid_argument for an array whose entries (p, c) are not all at places of their own.
+  /// Throws std::invalid_argument for strides by which two entries (p, c) share an address.
   static void check_wrapped(const Real* first, int particles, int columns, int row_stride,
                             int column_stride) {
     const auto refuse = [&](const std::string& why) {
@@ -101,7 +101,8 @@ struct Particles {
 };
 
 /// Rows to allocate for n particles: an odd number of cache lines, so that no two of the first 64 columns
-/// start at the same place of a 4096-byte page. Columns that do evict one another from the first-level cache.
+/// start at the same offset in a 4096-byte page. Columns with the same offset evict each other from the
+/// first-level cache.
 template <class Real>
 int padded_rows(int n) {
   constexpr int line = 64 / static_cast<int>(sizeof(Real));
@@ -173,7 +174,7 @@ ParticleBlock<Dim, Real, Kokkos::HostSpace> host_copy(const ParticleBlock<Dim, R
   return copy;
 }
 
-/// Brings back what host_copy gave.
+/// Copies the particles of host_copy back to the device.
 template <int Dim, class Real, class Device>
 void copy_to_device(const ParticleBlock<Dim, Real, Kokkos::HostSpace>& from,
                     const ParticleBlock<Dim, Real, Device>& to) {

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vsb/views/kokkos_compat.hpp>
 
-/// Stands between the parameter and the braces of a body: compilers judge each of the N calls by itself, and
-/// would leave some of them as calls, with the packs in memory.
+/// Stands between the parameter and the braces of a body. Without it compilers leave some of the N calls as
+/// calls, with the packs in memory.
 #define VSB_UNROLLED __attribute__((always_inline))
 
 namespace vsb {

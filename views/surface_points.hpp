@@ -9,15 +9,13 @@
 
 namespace vsb {
 
-/// What moves a surface point: the number of the particle on which it rides (a loaded material point), or one
-/// of these.
+/// What moves a surface point: the number of its particle (a loaded material point), or one of these.
 enum SurfaceCarrier : int {
   carried_by_grid = -1,  ///< a massless boundary particle, moved with the velocity of the grid
-  carried_by_none = -2,  ///< a conforming load at a node: place and area stay
+  carried_by_none = -2,  ///< a conforming load at a node: position and area are constant
 };
 
-/// Surface points, one row each, with the sums into which they are gathered. Without points nothing is
-/// allocated.
+/// Surface points, one row each, with the nodal sums of their forces. Without points nothing is allocated.
 template <int Dim, class Real, class Device>
 struct SurfacePoints {
   using Fields = Kokkos::View<Real**, Kokkos::LayoutRight, Device>;

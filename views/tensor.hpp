@@ -87,7 +87,7 @@ KOKKOS_INLINE_FUNCTION T determinant(const Matrix<Dim, T>& m) {
   }
 }
 
-/// det(m) m^-T, also where m has no inverse: what turns area vectors (Nanson).
+/// The cofactor det(m) m^-T, also where m has no inverse. It maps area vectors (Nanson).
 template <int Dim, class T>
 KOKKOS_INLINE_FUNCTION Matrix<Dim, T> cofactor(const Matrix<Dim, T>& m) {
   Matrix<Dim, T> c;
@@ -183,8 +183,8 @@ struct SymmetricTensor {
   KOKKOS_FUNCTION friend SymmetricTensor operator*(T s, SymmetricTensor a) { return a *= s; }
 };
 
-/// s . v, with the in-plane (Dim x Dim) part of s: the traction on a face of normal v, or a force from a
-/// gradient.
+/// s . v, with the in-plane (Dim x Dim) part of s: the traction on a face of normal v, or, with v = grad N, a
+/// nodal force.
 template <int Dim, class T>
 KOKKOS_INLINE_FUNCTION Vector<Dim, T> operator*(const SymmetricTensor<Dim, T>& s, const Vector<Dim, T>& v) {
   Vector<Dim, T> r;

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The void filter, an addition to Algorithm 1: of the void cells that touch the body only those count for E1
-/// that belong to the outside, so that a cell that particles have left inside a stretched body is not loaded.
+/// The void filter, an addition to Algorithm 1: a void cell that touches the body is a cell of E1 only if it
+/// belongs to the outside. A cell without particles inside a stretched body is then not loaded.
 ///
-/// The outside is a set of void cells, carried from one change of the occupancy to the next:
+/// The outside O_n is a set of void cells. Each change n of the occupancy makes it from the one before:
 ///   O_n = the void cells that are connected, through faces and void cells, to a void cell that was in
 ///         O_n-1 or shares a face with a cell that was.
-/// So the outside moves with the body and enters a hole that opens to it, and a cell that turns void counts
-/// only if it touches the outside; once outside, a void stays so for as long as it exists. A void that
-/// closes altogether and opens again is inside. O_0 is what set_void_filter and its caller say. Where no cell
-/// changes, neither does O, so it is the same however often it is brought up to date; to go on with a run one
-/// needs the particles and O.
+/// The outside therefore moves with the body and enters a hole that opens to it. A cell that turns void
+/// belongs to it only if it touches it. A void of the outside stays in it as long as the void exists. A void
+/// that closes altogether and opens again is inside. set_void_filter and its caller set O_0. O changes only
+/// where cells change, so that it does not depend on how often it is brought up to date. A run is resumed
+/// from its particles and O.
 ///
-/// Rows of bits as in kernels/boundary/mark_boundary_nodes.hpp: each pass dilates the outside by one cell
-/// within the voids, until none is added. Most changes need a pass or two.
+/// Rows of bits as in kernels/boundary/mark_boundary_nodes.hpp. Each pass dilates the outside by one cell
+/// within the voids, until no cell is added. Most changes need one or two passes.
 #pragma once
 
 #include <vsb/kernels/boundary/mark_boundary_nodes.hpp>
@@ -80,7 +80,7 @@ void update_outside(const Exec& exec, const Particles<Dim, Real, Device>& partic
   while (flood(bits.exterior, bits.outside));
 }
 
-/// What the filter keeps from the boundary.
+/// The cells and nodes that the filter removes from the boundary.
 struct VoidFilterEffect {
   int false_voids = 0;    ///< void cells that touch the body and do not belong to the outside
   int dropped_nodes = 0;  ///< nodes at which a traction would act without the filter

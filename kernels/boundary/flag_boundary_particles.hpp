@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Which particles contribute to a node at which a traction acts: flag_p = 1 if chi_I != 0 at a support node
-/// of p.
+/// The particles that contribute to a node at which a traction acts: flag_p = 1 if chi_I != 0 at a support
+/// node of p.
 #pragma once
 
 #include <vsb/views/nodes.hpp>

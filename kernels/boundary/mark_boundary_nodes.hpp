@@ -4,20 +4,19 @@
 ///   E1: void cells (no particle inside) that have an active node, that is, that touch a non-void cell;
 ///   E2: non-void cells that share a node with a cell of E1;
 ///   N1: active nodes whose support overlaps a cell of E1 or E2. For linear functions these are the nodes of
-///   such cells, as in the paper; wider functions (Basis::reach rings more) need a ring of nodes more, or a
+///   such cells, as in the paper. Wider functions (Basis::reach rings more) add a ring of nodes. Without it a
 ///   patch under uniform stress is out of balance by some 1e-3.
-/// Underfilled cells (kernels/boundary/mark_underfilled_cells.hpp), where they are asked for, count as cells
-/// of E2; the void filter (kernels/boundary/filter_voids.hpp), where it is asked for, leaves void cells out
-/// of E1.
+/// The fill criterion (kernels/boundary/mark_underfilled_cells.hpp) adds underfilled cells to E2. The void
+/// filter (kernels/boundary/filter_voids.hpp) leaves void cells out of E1. Both are optional.
 ///
-/// A traction acts at the nodes of N1 at which it is declared: at places of the grid, or, where its surface
-/// moves with the material (views/carried_tractions.hpp), at the active nodes whose support overlaps a cell
-/// that holds a particle that carries it.
+/// A traction acts at the nodes of N1 at which it is declared. It is declared at nodes of the grid; or, where
+/// its surface moves with the material (views/carried_tractions.hpp), at the active nodes whose support
+/// overlaps a cell with a particle that carries it.
 ///
 /// Every "touches" is a dilation of bit rows (kernels/boundary/bit_rows.hpp). There are no cells beyond a
-/// face of the grid, so a fixed or symmetry plane there makes no boundary; a free boundary needs a void cell
-/// beyond it. The ghost cells beyond a wall do not exist for this algorithm: they mirror the cells inside,
-/// and touch nothing that those do not; ghost nodes are marked as their images are.
+/// face of the grid, so that a fixed or symmetry plane there makes no boundary. A free boundary needs a void
+/// cell beyond it. This algorithm leaves out the ghost cells beyond a wall: they mirror the cells inside, and
+/// touch nothing that those do not. Ghost nodes are marked as their images are.
 #pragma once
 
 #include <vsb/kernels/boundary/bit_rows.hpp>
@@ -77,7 +76,7 @@ struct FindExterior {
   }
 };
 
-/// Leaves in E1 what belongs to the outside, word by word.
+/// Removes cells that do not belong to the outside from E1, word by word.
 template <class Device>
 struct KeepOutside {
   CellBits<Device> bits;
@@ -99,7 +98,8 @@ struct FindBoundary {
   }
 };
 
-/// Adds the underfilled cells to E1 and E2, word by word; void cells are none of them.
+/// Adds the underfilled cells to the union of E1 and E2, word by word. Void cells do not count as
+/// underfilled.
 template <class Device>
 struct AddUnderfilled {
   CellBits<Device> bits;
@@ -120,7 +120,7 @@ KOKKOS_INLINE_FUNCTION std::uint64_t carried_nodes(const CarriedTractions<Device
                       {{at[0] + reach, at[1] + reach}}, reach, 1 + reach);
 }
 
-/// N1: one word of nodes; counts those at which a traction acts. Ghost nodes beyond walls are no part of it.
+/// N1: one word of nodes; counts those at which a traction acts. Ghost nodes beyond walls are left out.
 template <int Dim, class Device>
 struct MarkNodes {
   CellBits<Device> bits;
@@ -172,7 +172,7 @@ void mark_carrying_cells(const Exec& exec, const Particles<Dim, Real, Device>& p
                        kernel::MarkCarrying<Grid, Dim, Real, Device>{particles, grid, carried});
 }
 
-/// What mark_boundary_nodes does, for particles that are known to lie in the grid.
+/// mark_boundary_nodes for particles that are known to lie in the grid.
 template <class Exec, class Basis, int Dim, class Real, class Device>
 int mark_boundary_of_located(const Exec& exec, const Particles<Dim, Real, Device>& particles,
                              const CellBits<Device>& bits, const Basis& basis,
@@ -202,11 +202,11 @@ int mark_boundary_of_located(const Exec& exec, const Particles<Dim, Real, Device
   return count;
 }
 
-/// Overwrites boundary[node] with tractions[node] at the nodes of N1 and with 0 elsewhere. tractions[node]
-/// says which tractions are declared at the place of a node (bit k: traction k), beside those that particles
-/// carry (bits.carried); those of `conservative` act at all active nodes, of N1 or not. Reads positions
-/// alone. Returns the number of nodes, ghost nodes aside, at which a traction acts; waits for the device.
-/// Throws std::invalid_argument for a particle outside the grid or at NaN.
+/// Overwrites boundary[node] with tractions[node] at the nodes of N1 and with 0 elsewhere. Bit k of
+/// tractions[node]: traction k is declared at the node. Tractions that particles carry (bits.carried) are
+/// added. Those of `conservative` act at all active nodes, also outside N1. Reads positions alone. Returns
+/// the number of nodes, without ghost nodes, at which a traction acts; waits for the device. Throws
+/// std::invalid_argument for a particle outside the grid or at NaN.
 template <class Exec, class Basis, int Dim, class Real, class Device>
 int mark_boundary_nodes(const Exec& exec, const Particles<Dim, Real, Device>& particles,
                         const CellBits<Device>& bits, const Basis& basis,

@@ -2,11 +2,12 @@
 /// \file
 /// The fill criterion, an addition to Algorithm 1: a non-void cell whose particles fill too little of it,
 ///   sum_p V_p < (1 - tau) V_cell,
-/// counts as a cell of E2, whether a void cell is near or not. It finds boundaries that are thinner than the
-/// cells next to them, such as a hole with a particle in every cell that it touches.
+/// is a cell of E2, whether a void cell is near or not. The criterion finds boundaries without void cells,
+/// such as a hole with a particle in every cell that it touches.
 ///
 /// Reads the bins sorted by sort_by_bin and the present volumes; writes CellBits::underfilled. The sum over a
-/// cell's particles runs in increasing particle number, so the cells are the same whatever ran in parallel.
+/// cell's particles runs in increasing particle number, so that the cells do not depend on the number of
+/// threads.
 #pragma once
 
 #include <vsb/kernels/boundary/mark_boundary_nodes.hpp>
@@ -16,8 +17,7 @@ namespace vsb {
 
 namespace kernel {
 
-/// One word of cells: those that are filled too little; counts the words that
-/// change.
+/// One word of cells: the underfilled ones; counts the words that change.
 template <class Basis, int Dim, class Real, class Device>
 struct MarkUnderfilled {
   Particles<Dim, Real, Device> particles;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The body force that takes the resultant out of a virtual stress whose tractions are in balance among
-/// themselves, such as a pressure in a closed hole. At all active nodes (chi = 1) the force and the torque of
-/// a virtual stress are
-///   sum_p V_p fbar(x_p),   sum_p V_p x_p x fbar(x_p),
-/// whatever the grid, since sum_I N_I = 1 and sum_I N_I x_I = x: the particles' quadrature of the divergence.
-/// What that leaves of a resultant that should be zero is taken out by fbar <- fbar + c + w x (x - x_c), with
-/// the centroid x_c, c = -F / V and J w = -T_c, J the inertia of the particles' volumes.
+/// The body force that removes the resultant of a virtual stress whose tractions balance each other, such as
+/// a pressure in a closed hole. With chi = 1 at all active nodes the force and the torque of a virtual stress
+/// are
+///   F = sum_p V_p fbar(x_p),   T = sum_p V_p x_p x fbar(x_p)
+/// on any grid, since sum_I N_I = 1 and sum_I N_I x_I = x. Both should be zero. The particles' quadrature of
+/// the divergence leaves an error, which a body force removes:
+///   fbar <- fbar + c + w x (x - x_c),   c = -F / V,   J w = -T_c,
+/// with the centroid x_c and the inertia J of the particles' volumes.
 ///
 /// Reads positions and volumes; costs one pass over the particles, with sums in a fixed order.
 #pragma once
@@ -86,7 +87,7 @@ RigidBodyForce<Dim, Real> balancing_force(const Exec& exec, const Particles<Dim,
     if constexpr (Dim == 2)  // about z alone
       for (int i = 0; i < 2; ++i)
         for (int j = 0; j < 2; ++j) J(i, j) = i == j ? size : 0.0;
-    // Particles on one line have no inertia about it: then no spin.
+    // Particles on one line have no inertia about it: w stays zero.
     if (determinant(J) > 1e-12 * size * size * size) {
       const Vector<3, double> w = inverse(J) * Vector<3, double>{{-T[0], -T[1], -T[2]}};
       const double skew[3][3] = {{0, -w[2], w[1]}, {w[2], 0, -w[0]}, {-w[1], w[0], 0}};

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// What follows from where the particles are: their bins, and, when a particle has changed its bin or a
-/// traction is declared elsewhere, the order of the particles within the bins and the boundary nodes. Where
-/// bins are no cells (bases with reach) the boundary nodes are found at every call: a particle may change its
-/// cell and stay in its bin. With a fill criterion the boundary nodes follow the volumes too: the cells' fill
-/// is summed at every call, so that the nodes depend on the particles of the moment alone, and a resumed run
-/// finds the ones it had.
+/// Brings everything up to date that depends on the positions of the particles: their bins at every call; the
+/// order of the particles by bin and the boundary nodes when a particle changed its bin, or a traction is
+/// declared at other nodes.
+///
+/// Bases with ghost layers have bins that are not cells: a particle may change its cell and stay in its bin.
+/// Their boundary nodes are found at every call. With a fill criterion the boundary nodes depend on the
+/// volumes too, and the fill of the cells is summed at every call. The nodes depend on the present particles
+/// alone, so that a resumed run has the same ones.
 #pragma once
 
 #include <vsb/kernels/boundary/filter_voids.hpp>
@@ -20,7 +22,7 @@ template <class Device>
 struct Occupancy {
   ParticleBins<Device> bins;
   CellBits<Device> cells;
-  BoundaryNodes<Device> tractions;  ///< [node]: the tractions declared at the node's place
+  BoundaryNodes<Device> tractions;  ///< [node]: the tractions declared at the node
   BoundaryNodes<Device> boundary;   ///< [node]: the tractions that act there, N1 of Algorithm 1
   TractionMask conservative = 0;    ///< the tractions that act at all active nodes, where they are declared
   BoundaryNodes<Device> marked;     ///< [node]: `tractions` as the last update found them
@@ -44,16 +46,16 @@ Occupancy<Device> allocate_occupancy(int particles, const Basis& basis) {
   return o;
 }
 
-/// From the next update on, cells that the particles fill by less than 1 - tau, 0 < tau < 1, count as cells
-/// of E2. tau must be well above the strain of the cells inside the body and the scatter of their fill, or
-/// they count too.
+/// From the next update on, cells that the particles fill by less than 1 - tau, 0 < tau < 1, are cells of E2.
+/// tau must be well above the strain of the cells inside the body and the scatter of their fill; else these
+/// are cells of E2 too.
 template <class Device>
 void set_fill_criterion(Occupancy<Device>& o, double tau) {
   o.minimum_fill = 1 - tau;
   o.cells.underfilled = typename CellBits<Device>::Rows("vsb::cells_underfilled", o.cells.boundary.extent(0),
                                                         o.cells.boundary.extent(1));
   Kokkos::deep_copy(o.cells.underfilled,
-                    ~std::uint64_t(0));  // no set of cells: the next update finds another
+                    ~std::uint64_t(0));  // not a valid set, so that the next update finds a change
 }
 
 /// From the next update on, tractions are declared where the particles are that carry them, beside those of
@@ -76,9 +78,8 @@ void mark_anew(Occupancy<Device>& o) {
   Kokkos::deep_copy(o.bins.bin, -1);
 }
 
-/// From the next update on, only void cells of the outside count as cells of E1. All cells are in the set
-/// from which the outside of the next update follows; clear the bits in CellBits::outside of cells that are
-/// known to lie in the body.
+/// From the next update on, only void cells of the outside are cells of E1. The outside starts with all
+/// cells; clear the bits in CellBits::outside of cells that are known to lie in the body.
 template <class Device, class Basis>
 void set_void_filter(Occupancy<Device>& o, const Basis& basis) {
   o.cells.outside = typename CellBits<Device>::Rows("vsb::cells_outside", o.cells.boundary.extent(0),
@@ -93,8 +94,8 @@ void set_void_filter(Occupancy<Device>& o, const Basis& basis) {
 
 namespace kernel {
 
-/// One particle as in LocateParticle, and one node: 0, too, where its declaration is not the one that was
-/// marked.
+/// One particle as in LocateParticle, and one node: the result is 0 also where the node's declaration is not
+/// the one that was marked.
 template <class Basis, class Cloud, class Device>
 struct LocateAndCompare {
   LocateParticle<Basis, Cloud, Device> locate;
@@ -107,7 +108,7 @@ struct LocateAndCompare {
   }
 };
 
-/// One node: its declaration, to be compared with later ones; and all declarations together.
+/// One node: stores its declaration, to compare later ones with; reduces to the union of all declarations.
 template <class Device>
 struct TakeDeclaration {
   BoundaryNodes<Device> tractions, marked;

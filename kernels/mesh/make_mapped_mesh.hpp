@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Makes a mapped grid out of the positions of its nodes, on the host: checks the cells, builds the raster
-/// from which walks start, and copies both to the device. The work grows as the number of cells.
+/// Makes a mapped grid from the positions of its nodes, on the host: checks the cells, builds the raster that
+/// gives the first cell of a search, and copies both to the device. The work grows as the number of cells.
 #pragma once
 
 #include <algorithm>
@@ -53,7 +53,7 @@ void check_cells(const MappedGrid<Dim, Real>& grid) {
   }
 }
 
-/// Whether nodes have their coordinate i from their number along axis i alone, and it increases with that.
+/// Whether coordinate i of a node depends on its number along axis i alone, and increases with it.
 template <int Dim, class Real>
 bool is_rectilinear(const MappedGrid<Dim, Real>& grid) {
   for (int node = 0; node < grid.node_count(); ++node) {
@@ -102,9 +102,9 @@ void fit_raster(MappedGrid<Dim, Real>& grid) {
   grid.raster = {low, spacing, count};
 }
 
-/// Per raster cell, the grid cell that contains its centre; beyond the grid, that of the nearest raster cell
-/// in steps between neighbours. Walks to the centres begin in a cell with its own centre in the raster cell,
-/// or else in that of a neighbour, so that they are short.
+/// For every raster cell, the grid cell that contains its centre. A raster cell beyond the grid has that of
+/// the nearest raster cell, counted in steps between neighbours. The search for a centre begins at a grid
+/// cell whose centre lies in the raster cell, or else at the result of a neighbour, so that it is short.
 template <class Grid>
 std::vector<int> start_cells(const Grid& grid) {
   constexpr int Dim = Grid::dimension;
@@ -156,7 +156,7 @@ std::vector<int> start_cells(const Grid& grid) {
 
 }  // namespace mapped
 
-/// `position` maps the logical coordinates of a node (see CellNumbering) to its place in m. Throws
+/// `position` maps the logical coordinates of a node (see CellNumbering) to its position in m. Throws
 /// std::invalid_argument for a cell that is degenerate or inverted.
 template <class Real, class Device, int Dim, class Position>
 MappedMesh<Dim, Real, Device> make_mapped_mesh(const Vector<Dim, int>& cells, const Position& position) {

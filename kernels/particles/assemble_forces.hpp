@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Mass, momentum and force of all nodes, from
-///   particles, with the virtual stress (Eqs. 27, 28): kernels/particles/particles_to_grid.hpp;
-///   whole cells, of the original method (Eqs. 21, 22): kernels/particles/original_virtual_stress.hpp;
-///   surface points (Eqs. 12, 13): kernels/particles/surface_traction.hpp;
-/// what ghost nodes beyond walls get goes to their images.
+/// Mass, momentum and force of all nodes, the sum of
+///   particles with the virtual stress, Eq. (27), Eq. (28): kernels/particles/particles_to_grid.hpp;
+///   whole cells, of the original method, Eq. (21), Eq. (22): kernels/particles/original_virtual_stress.hpp;
+///   surface points, Eq. (12), Eq. (13): kernels/particles/surface_traction.hpp.
+/// The sums of ghost nodes beyond walls are added to those of their images.
 #pragma once
 
 #include <vsb/kernels/boundary/update_occupancy.hpp>

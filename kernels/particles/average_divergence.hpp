@@ -3,8 +3,8 @@
 /// The mean divergence thetabar_p of particles, with the functions M_c of physics/mean_divergence.hpp:
 ///   theta_p = sum_I v_I . grad N_Ip,   theta_c = sum_p V_p M_c(x_p) theta_p / sum_p V_p M_c(x_p),
 ///   thetabar_p = sum_c M_c(x_p) theta_c.
-/// Sums go over the particles of one stiffness: where two share a cell, a mean over both would not be
-/// symmetric in the energy.
+/// Sums run over the particles of one stiffness. A mean over particles of two stiffnesses in a cell would
+/// make the stiffness matrix unsymmetric.
 ///
 /// Reads positions, volumes, sorted bins and a nodal field; writes one number per particle.
 #pragma once
@@ -19,7 +19,7 @@
 
 namespace vsb {
 
-/// The mean divergence of the particles, and memory to find it; empty until it is asked for.
+/// The mean divergence of the particles, with scratch memory; empty until average_divergence is called.
 template <class Real, class Device>
 struct MeanDivergence {
   using Numbers = Kokkos::View<Real*, Device>;
@@ -90,7 +90,8 @@ struct InterpolateDivergence {
 
 }  // namespace kernel
 
-/// What two bodies have in common whose mean divergence is one: lambda, mu, and whether they flow.
+/// The constants in which bodies must agree to share one mean divergence: lambda, mu, and whether they are
+/// plastic.
 template <class Real>
 std::tuple<Real, Real, bool> stiffness_of(const Material<Real>& material) {
   return std::visit(

@@ -2,7 +2,7 @@
 /// \file
 /// Grid to particles, FLIP: v_p <- v_p + dt sum_I N_Ip a_I.
 ///
-/// Reads positions and nodal accelerations; writes velocities. Particles move later (update_stress), since
+/// Reads positions and nodal accelerations; writes velocities. update_stress moves the particles later, since
 /// the re-map needs the basis functions at the old positions.
 #pragma once
 

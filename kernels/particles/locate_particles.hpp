@@ -2,9 +2,9 @@
 /// \file
 /// Finds the bin of every particle, and sorts the particles by bin.
 ///
-/// Reads positions (of particles, or of anything with count() and position_of()); writes ParticleBins. A
-/// stable counting sort: the place of a particle within its bin does not depend on the order in which threads
-/// run.
+/// Reads positions of particles, or of another type with count() and position_of(); writes ParticleBins. The
+/// sort is a stable counting sort: the order of particles within a bin does not depend on the number of
+/// threads.
 #pragma once
 
 #include <vsb/kernels/preconditions.hpp>
@@ -114,8 +114,7 @@ struct SortBin {
 
 namespace detail {
 
-/// What `look`, a LocateParticle of n particles or something that does the same and more, finds in `work`
-/// items.
+/// The result of `look`, a LocateParticle of n particles or a functor that extends it, over `work` items.
 template <class Exec, class Look, class Basis, class Device>
 Whereabouts whereabouts(const Exec& exec, const Look& look, int work, int n, const ParticleBins<Device>& bins,
                         const Basis& basis) {

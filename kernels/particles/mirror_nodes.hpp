@@ -5,9 +5,9 @@
 ///   after a sum over particles:      f_I' <- f_I' + s f_I,   f_I <- 0;
 ///   after a velocity is known:       v_I <- s v_I'.
 /// The first is the transpose of the second, so that momentum and energy are those of a body with its
-/// reflection. Directions come one after the other, which reflects edges and corners too.
+/// reflection. The directions are worked on one after the other: this reflects edges and corners too.
 ///
-/// Bases without reach have no ghost nodes: nothing is launched for them.
+/// Nothing is launched for bases without ghost nodes.
 #pragma once
 
 #include <vsb/views/nodes.hpp>
@@ -93,7 +93,8 @@ void for_each_mirror_line(const Exec& exec, const std::string& label, const Basi
 
 }  // namespace kernel
 
-/// Moves what particles gave to ghost nodes to the images; columns from `scalars` on are vector components.
+/// Adds the sums of ghost nodes to their images and clears them; columns from `scalars` on are vector
+/// components.
 template <class Exec, class Basis, class Fields>
 void fold_ghost_nodes(const Exec& exec, const Basis& basis, const Fields& sums, int scalars) {
   kernel::for_each_mirror_line(exec, "vsb::fold_ghost_nodes", basis, [&](const auto& line) {

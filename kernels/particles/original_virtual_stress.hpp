@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The original virtual stress boundary method (Eqs. 21, 22): beside the sum over particles,
-///   f_I <- f_I - sum_c V_c (sbar_c . grad N_Ic + N_Ic fbar_c),
-/// c running over the Gauss points of whole cells. At a node of N1 both this sum and the particles' sum of
-/// sbar run over the cells of E1 and E2 only; with complete supports the two would cancel to the modified
-/// method.
+/// The original virtual stress boundary method, Eq. (21), Eq. (22). Beside the sum over particles,
+///   f_I <- f_I - sum_c V_c (sbar_c . grad N_Ic + N_Ic fbar_c)
+/// over the Gauss points c of whole cells. At a node of N1 both this sum and the particles' sum of sbar run
+/// over the cells of E1 and E2 only. Over complete supports the method would equal the modified one.
 ///
 /// Reads the cells of Algorithm 1; writes nodal forces.
 #pragma once
@@ -43,7 +42,7 @@ struct OriginalVirtualStress {
 
 namespace kernel {
 
-/// One node: what the whole cells around it subtract.
+/// One node: subtracts the sum over the whole cells around it.
 template <class Field, class Basis, int Dim, class Real, class Device>
 struct SubtractCellStress {
   Field virtual_stress;

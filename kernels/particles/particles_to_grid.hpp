@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Particles to grid, with the virtual stress fused in (Eqs. 10, 11, 27, 28):
+/// Particles to grid, with the virtual stress fused in, Eq. (10), Eq. (11), Eq. (27), Eq. (28):
 ///   m_I = sum_p N_Ip m_p,   p_I = sum_p N_Ip m_p v_p,
 ///   f_I = sum_p -V_p (sigma_p - chi_I sbar) . grad N_Ip + N_Ip (m_p b + chi_I V_p fbar),
 /// chi_I = 1 at the boundary nodes N1 of Algorithm 1. Sums at a boundary node run over all particles of its
@@ -18,14 +18,15 @@ namespace vsb {
 
 namespace kernel {
 
-/// What one particle gives to its support nodes, into sink(a, node, column) with the columns of Nodes::sums.
+/// Adds the terms of one particle at its support nodes to sink(a, node, column), with the columns of
+/// Nodes::sums.
 template <class Shape, class Field, class Boundary, int Dim, class Real, class Sink>
 KOKKOS_FORCEINLINE_FUNCTION void add_particle(const Shape& shape, const Vector<Dim, Real>& x,
                                               const Vector<Dim, Real>& v,
                                               const SymmetricTensor<Dim, Real>& sigma, Real m, Real V,
                                               const Field& virtual_stress, const Boundary& boundary,
                                               const Vector<Dim, Real>& gravity, const Sink& sink) {
-  // Adds what node a gets: `stress` is sigma - chi sbar, `body_force` is m b + chi V fbar.
+  // Adds the terms at node a: `stress` is sigma - chi sbar, `body_force` is m b + chi V fbar.
   const auto add = [&](int a, const auto& stress, const auto& body_force) {
     const auto f = shape.N[a] * body_force - V * (stress * shape.dN[a]);
     const Real Nm = shape.N[a] * m;
@@ -34,7 +35,7 @@ KOKKOS_FORCEINLINE_FUNCTION void add_particle(const Shape& shape, const Vector<D
     for (int i = 0; i < Dim; ++i) sink(a, shape.node[a], 1 + Dim + i) += f[i];
   };
   if constexpr (Field::loaded) {
-    // Most particles have no node of N1 and take the short way out.
+    // Most particles have no node of N1: they skip the virtual stress.
     TractionMask any = 0;
     for (int a = 0; a < Shape::support; ++a) any |= boundary(shape.node[a]);
     if (any != 0) {
@@ -92,7 +93,7 @@ void particles_to_grid(const Exec& exec, const Particles<Dim, Real, Device>& par
   if constexpr (Field::loaded)
     sum(virtual_stress);
   else
-    sum(NoVirtualStress{});  // one kernel for all fields that have nothing to add to particles
+    sum(NoVirtualStress{});  // one kernel for all fields that do not act on particles
 }
 
 }  // namespace vsb

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Takes particles away (Algorithm 2, step 3). Those that stay move up and keep their order:
+/// Removes particles (Algorithm 2, step 3). The fields of the others are compacted in their order:
 ///   row k of a field <- row kept(k),   kept = the numbers of the particles that stay, in increasing order.
 ///
-/// Reads which particles go; changes fields in place, column by column through one column of scratch memory.
-/// The result is the same whatever ran in parallel.
+/// Reads the flags of the particles to remove; changes fields in place, column by column through one column
+/// of scratch memory. The result does not depend on the number of threads.
 #pragma once
 
 #include <vsb/views/particles.hpp>
@@ -13,7 +13,7 @@ namespace vsb {
 
 namespace kernel {
 
-/// Lists the numbers of what stays.
+/// Lists the numbers of the particles that stay.
 template <class Device>
 struct ListKept {
   Kokkos::View<const unsigned char*, Device> removed;  ///< [particle]: 1 where it goes
@@ -57,7 +57,8 @@ Kokkos::View<int*, Device> list_kept(const Exec& exec,
   return Kokkos::View<int*, Device>(kept, std::make_pair(0, count));
 }
 
-/// Moves the kept rows of a field up; what lies beyond them is left as it was. `scratch` has room for them.
+/// Moves the kept rows of a field to its first rows; rows beyond them stay as they were. `scratch` must be
+/// large enough for one column of them.
 template <class Exec, class Real, class Device>
 void keep_rows(const Exec& exec, const Kokkos::View<Real**, Kokkos::LayoutStride, Device>& field,
                const Kokkos::View<const int*, Device>& kept, const Kokkos::View<Real*, Device>& scratch) {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// Tractions on surface points: material points of the outermost layer, massless boundary particles, or nodes
-/// of a conforming boundary (Eqs. 12, 13),
-///   f_I <- f_I + sum_b N_I(x_b) sbar(x_b) a_b,   a_b = A_b n_b,   sbar . n = t;
-/// the points move with their carrier, and areas follow Nanson's formula,
-///   a_b <- det(F) F^-T a_b = cof(I + dt L) a_b   step by step (the cofactor of a product is the product of
-///   the cofactors, so that no deformation gradient need be kept).
+/// of a conforming boundary, Eq. (12), Eq. (13),
+///   f_I <- f_I + sum_b N_I(x_b) sbar(x_b) a_b,   a_b = A_b n_b,   sbar . n = t.
+/// The points move with their carrier. Areas follow Nanson's formula,
+///   a_b <- cof(F) a_b = det(F) F^-T a_b,   F = I + dt L,
+/// step by step. The cofactor of a product is the product of the cofactors, so that no total deformation
+/// gradient is stored.
 ///
 /// Reads nodal velocities and particle positions; writes nodal forces, and forces, positions and areas of the
 /// points.
@@ -21,7 +22,7 @@ namespace vsb {
 
 namespace kernel {
 
-/// One point: sbar a, in a kernel of its own so that what scatters the forces is the same for every field.
+/// One point: sbar a. A kernel of its own, so that the scatter of the forces is one instance for all fields.
 template <class Field, int Dim, class Real, class Device>
 struct LoadSurfacePoint {
   SurfacePoints<Dim, Real, Device> points;
@@ -59,8 +60,7 @@ struct AddSurfaceForce {
   }
 };
 
-/// One point: its place and area at the end of the step. Particles have moved already; points on them have
-/// not.
+/// One point: its position and area at the end of the step. Called after the particles moved.
 template <class Basis, int Dim, class Real, class Device>
 struct MoveSurfacePoint {
   SurfacePoints<Dim, Real, Device> points;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The equation of motion at the nodes (Eq. 9), with Cundall damping and prescribed components:
+/// The equation of motion at the nodes, Eq. (9), with Cundall damping and prescribed components:
 ///   v_I = p_I / m_I,   f_I <- f_I - alpha |f_I| sign(v_I),   a_I = f_I / m_I,   v_I <- v_I + dt a_I;
 /// a = v = 0 in a prescribed component; ghost nodes beyond walls follow their images.
 ///

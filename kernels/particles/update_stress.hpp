@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// The end of the step on the particles, with the basis functions at the old positions:
-///   L = sum_I v*_I (x) grad N_Ip,   sigma <- material(sigma, L dt),   V <- V det(I + dt L) or V exp(dt tr
-///   L), x_p <- x_p + dt sum_I N_Ip v_I   (v_I: before the re-map; v*_I: after it).
-/// Against volumetric locking the divergence of L gives way to a mean (physics/mean_divergence.hpp).
+///   L = sum_I v*_I (x) grad N_Ip,   sigma <- material(sigma, L dt),
+///   V <- V det(I + dt L) or V exp(dt tr L),   x_p <- x_p + dt sum_I N_Ip v_I,
+/// v_I being the velocity before the re-map and v*_I that after it. Against volumetric locking a mean
+/// replaces the divergence of L (physics/mean_divergence.hpp).
 ///
 /// Reads both nodal velocities and the mean divergence; writes positions, stresses and volumes, and the state
 /// of a material that has one.
@@ -73,7 +74,7 @@ void check_material_state(const Particles<Dim, Real, Device>& particles, const B
                        state_size<Dim>(body.material));
 }
 
-/// Refuses a material with a stiffness that is no number, as one that was never set may have.
+/// Refuses a material whose stiffness is not a number, such as one that was never set.
 template <class Material>
 void check_material(const Material& material) {
   if (const double M = material.constrained_modulus(); !(M >= 0) || std::isinf(M))
@@ -81,7 +82,8 @@ void check_material(const Material& material) {
                    " Pa: make materials by their functions from(...) and from_young(...)");
 }
 
-/// Refuses bodies of which a particle is in none, or in several: it would stay where it is, or advance twice.
+/// Refuses bodies where a particle is in none, so that it would not move, or in several, so that it would
+/// advance twice.
 template <class Real>
 void check_bodies(const std::vector<Body<Real>>& bodies, int particles) {
   std::vector<std::pair<int, int>> ranges;

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// How far a state is from equilibrium, and the resultant of its tractions.
-///   unbalanced U = |f| over free components;   internal I = |f| without virtual stress, over all components;
-///   force ratio U / I;   net force and torque: kernels/readout/resultant.hpp. They count what acts on
-///   prescribed components, and what surface points in void cells give to nodes without mass; the unbalanced
-///   force does not: the support takes up the one, and the other acts on nothing; kinetic energy sum_I
-///   |p_I|^2 / (2 m_I);   strain energy scale sum_p V |sigma|^2 / (2 M).
-/// The kinetic energy is the grid's: velocities of FLIP particles that cancel at every node move nothing, and
-/// no damping ever reaches them.
+/// How far a state is from equilibrium, and the resultant of its tractions:
+///   unbalanced force     U = |f| over the free components of nodes with mass,
+///   internal force       I = |f| without virtual stress, over all components,
+///   force ratio          U / I,
+///   kinetic energy       sum_I |p_I|^2 / (2 m_I),
+///   strain energy scale  sum_p V_p |sigma_p|^2 / (2 M),
+///   net force and torque of the tractions (kernels/readout/resultant.hpp).
+/// The resultant includes forces on prescribed components, which the support takes up, and forces of surface
+/// points on nodes without mass, which move nothing. The unbalanced force includes neither.
+///
+/// The kinetic energy is that of the grid. Particle velocities that cancel at every node are not in it: they
+/// move nothing, and the damping, which acts at nodes, does not reduce them.
 #pragma once
 
 #include <vsb/kernels/readout/resultant.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Finds the first particle that a diverging run has spoilt: a field that is not finite, or a volume that is
-/// not positive (J <= 0).
+/// Finds the first particle with an invalid field, as a diverging run makes it: a field that is not finite,
+/// or a volume that is not positive (J <= 0).
 #pragma once
 
 #include <vsb/views/particles.hpp>
@@ -10,7 +10,7 @@ namespace vsb {
 
 enum class ParticleField { position, velocity, cauchy_stress, volume, none };
 
-/// A particle and the field that is wrong with it; particle -1 where all is well.
+/// A particle and its invalid field; particle -1 where all fields are valid.
 struct Invalid {
   int particle;
   ParticleField field;
@@ -18,7 +18,7 @@ struct Invalid {
 
 namespace kernel {
 
-/// The first spoilt field of a particle with this position, velocity, stress and volume.
+/// The first invalid field of a particle with this position, velocity, stress and volume.
 template <int Dim, class Real>
 KOKKOS_FUNCTION ParticleField spoilt_field(const Vector<Dim, Real>& x, const Vector<Dim, Real>& v,
                                            const SymmetricTensor<Dim, Real>& sigma, Real volume) {
@@ -47,7 +47,7 @@ struct CheckParticle {
   }
 };
 
-/// Runs CheckParticle::field for one particle where the data is.
+/// Runs CheckParticle::field for one particle on the device that has the data.
 template <int Dim, class Real, class Device>
 struct NameField {
   CheckParticle<Dim, Real, Device> check;
@@ -57,7 +57,7 @@ struct NameField {
 
 }  // namespace kernel
 
-/// The spoilt particle of lowest number. Waits for the device.
+/// The invalid particle of lowest number. Waits for the device.
 template <class Exec, int Dim, class Real, class Device>
 Invalid find_invalid(const Exec& exec, const Particles<Dim, Real, Device>& particles) {
   const int n = particles.count();

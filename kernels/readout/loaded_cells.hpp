@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// How many cells at the boundary (E2 of Algorithm 1) a traction loads: whole, with something acting at all
-/// their nodes; or in part, with nothing at some of them, as where the region ends in which it is declared.
-/// Many of the latter say that the boundary has left the region.
+/// How many cells at the boundary (E2 of Algorithm 1) a traction loads: wholly, where some traction acts at
+/// all their nodes; or partly, where none acts at some of them. Partly loaded cells are usual at the edge of
+/// the region in which a traction is declared. Many of them are a sign that the boundary has left the region.
 #pragma once
 
 #include <vsb/kernels/boundary/update_occupancy.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The equivalent plastic deviatoric strain of particles, Eq. (34), from the plastic strain tensor with which
-/// the state of a plastic material begins.
+/// The equivalent plastic deviatoric strain of particles, Eq. (34). The state of a plastic material begins
+/// with the plastic strain tensor.
 #pragma once
 
 #include <vsb/physics/plastic_strain.hpp>

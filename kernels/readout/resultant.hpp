@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Resultant force and torque of tractions, whatever is held or mirrored: what they give to all nodes
-/// together, prescribed ones and ghost nodes beyond walls included. Of virtual stresses (Eqs. 27, 28)
-///   R = sum_p V_p sum_I chi_I (sbar . grad N_Ip + N_Ip fbar),
-/// less the support's part. R is the integral of a divergence, hence of chi sbar . n over the whole surface
-/// of the particles, chi = sum_I chi_I N_I; where they stand on a face of the grid, that face closes the
-/// body, no traction is meant there, and what the sum has of it,
+/// Resultant force and torque of tractions: the sum of their forces over all nodes, those with prescribed
+/// components and ghost nodes beyond walls included. Of virtual stresses, Eq. (27), Eq. (28),
+///   R = sum_p V_p sum_I chi_I (sbar . grad N_Ip + N_Ip fbar) - (the part of the faces of the grid).
+/// The sum is the integral of a divergence, and so that of chi sbar . n over the whole surface of the
+/// particles, chi = sum_I chi_I N_I. Where the body stands on a face of the grid, this surface includes the
+/// face, at which no traction is meant. The part of the sum from pieces w of the face,
 ///   sum_w A_w sum_I chi_I N_I(x_w) sbar . n,
-/// is taken up by the face in the components that it holds. In free components it loads the body, and counts.
+/// is removed in the components that the face prescribes, since the face takes it up. In free components it
+/// loads the body, and stays in R.
 ///
-/// A particle stands on a face if it is closer to it than the edge of a cube of its volume; it covers
-/// A_w = V_p / (2 d) at the distance d, as the box around it does. Where particles are other than that, such
-/// as flat ones, or shares of boxes that a surface cuts, the caller knows better (FaceCover). The whole cells
-/// of the original method (kernels/particles/original_virtual_stress.hpp) close at the faces too. Surface
-/// points give sbar . a each.
+/// A particle stands on a face if it is closer to it than the edge of a cube of its volume. It covers the
+/// area A_w = V_p / (2 d) at the distance d, as the box around it does. The caller sets the area (FaceCover)
+/// of particles of another shape: flat ones, or shares of boxes that a surface cuts. The whole cells of the
+/// original method (kernels/particles/original_virtual_stress.hpp) have a part of the faces too. A surface
+/// point adds sbar . a.
 ///
 /// Reads particles, surface points and the marks of Algorithm 1. Sums have a fixed order.
 #pragma once
@@ -30,8 +31,9 @@ struct TractionResultant {
   Vector<3, double> torque;   ///< about the origin, N m; in 1D zero, in 2D along z
 };
 
-/// [particle][axis]: what it covers of a face of the grid across an axis, in units of V_p / (2 d); 0: it does
-/// not stand there; below 0, and where the array is empty: as the box around it.
+/// [particle][axis]: the area of a face of the grid across an axis that a particle covers, in units of
+/// V_p / (2 d). 0: it does not stand on the face. Below 0, and where the array is empty: as the box around
+/// it.
 template <class Device>
 using FaceCover = Kokkos::View<const float**, Device>;
 
@@ -57,7 +59,8 @@ KOKKOS_FUNCTION void add_force(const Vector<Dim, Real>& place, const Vector<Dim,
   }
 }
 
-/// Adds what the tractions of `among` give to the nodes of a particle; place(a): where support node a is.
+/// Adds the forces of the tractions in `among` at the nodes of a particle. place(a): the position of support
+/// node a.
 template <class Shape, class Field, class Boundary, class Place, int Dim, class Real>
 KOKKOS_FUNCTION void add_traction(const Shape& shape, const Vector<Dim, Real>& x, Real V, const Field& field,
                                   TractionMask among, const Boundary& boundary, const Place& place,
@@ -84,8 +87,8 @@ struct CoveredFace {
   Vector<Dim, Real> area;  ///< times the normal out of the grid, m^(Dim - 1)
 };
 
-/// Takes out what the sum has of such a piece; held(a): the components that the face holds at support node a
-/// of `shape`, the basis functions at piece.x.
+/// Removes the part of such a piece from the sum. held(a): the components that the face prescribes at support
+/// node a of `shape`, the basis functions at piece.x.
 template <class Shape, class Field, class Boundary, class Held, class Place, int Dim, class Real>
 KOKKOS_FUNCTION void take_out_support(const Shape& shape, const CoveredFace<Dim, Real>& piece,
                                       const Field& field, TractionMask acting, const Boundary& boundary,
@@ -108,7 +111,8 @@ KOKKOS_FUNCTION Real cover_of(const FaceCover<Device>& cover, int p, int axis) {
                            : static_cast<Real>(cover(static_cast<size_t>(p), static_cast<size_t>(axis)));
 }
 
-/// The area of a particle of volume V at the distance d from a face; 0 where it does not stand on it.
+/// The area that a particle of volume V covers at the distance d from a face; 0 where it does not stand on
+/// it.
 template <int Dim, class Real>
 KOKKOS_FUNCTION Real covered_area(Real V, Real d, Real cover) {
   if (cover >= Real(0)) return d > Real(0) ? cover * V / (2 * d) : Real(0);
@@ -119,8 +123,9 @@ KOKKOS_FUNCTION Real covered_area(Real V, Real d, Real cover) {
   return V / math::max(2 * d, edge / 4);
 }
 
-/// What particle p covers of the face of a grid at the end `side` of an axis, `reach` cells of ghosts inside;
-/// false where it does not stand on it.
+/// Finds the piece that a particle covers of the face of the scene's grid at the end `side` of an axis.
+/// `grid` has `reach` layers of ghost cells outside that face. Returns false where the particle does not
+/// stand on it.
 template <int Dim, class Real>
 KOKKOS_FUNCTION bool find_covered(const UniformGrid<Dim, Real>& grid, int reach, const Vector<Dim, Real>& x,
                                   Real V, Real cover, int axis, int side, CoveredFace<Dim, Real>& piece) {
@@ -161,19 +166,20 @@ KOKKOS_FUNCTION bool find_covered(const MappedGrid<Dim, Real>& grid, int, const 
   const auto n = face_normal(at.J, axis, side);
   const Real d = dot(at.x - x, n);
   Real area = 0;
-  if (cover < Real(0)) {  // a cube in local coordinates: cells may be far longer than wide
+  if (cover < Real(0)) {  // a cube in local coordinates, since cells may be far longer than wide
     const Real share = V / cell.volume();
     area = covered_area<Dim>(share, away, cover) * V * away / (share * d);
   } else {
     area = covered_area<Dim>(V, d, cover);
   }
-  // Straight across to the face: the lines of a cell that end there may be inclined, as chords of arcs are.
+  // The foot of the perpendicular on the face. Grid lines may meet the face at an angle, as chords of arcs
+  // do.
   const auto foot = x + d * n;
   piece = {grid.contains(foot) ? foot : at.x, area * n};
   return area > Real(0);
 }
 
-/// The components that a face of the grid holds at a node.
+/// The components that a face of the grid prescribes at a node.
 template <class Basis, int Dim, class Real, class Device>
 struct HeldAtFace {
   Basis basis;
@@ -186,7 +192,7 @@ struct HeldAtFace {
   }
 };
 
-/// One particle: what tractions of the virtual stress methods give to its nodes, less the support's part.
+/// One particle: the forces of the virtual stress methods at its nodes, without the part of the faces.
 template <class Basis, class Field, int Dim, class Real, class Device>
 struct ParticleResultant {
   Particles<Dim, Real, Device> particles;
@@ -230,8 +236,8 @@ struct NodeForce {
   }
 };
 
-/// One cell: what the whole boundary cells of the original method cover of the faces of the grid, with the
-/// sign of what they subtract.
+/// One cell: the part of the faces of the grid in the sums over whole boundary cells of the original method.
+/// These sums are subtracted, and so the sign is the opposite.
 template <class Basis, class Field, int Dim, class Real, class Device>
 struct WholeCellsAtFaces {
   Basis basis;

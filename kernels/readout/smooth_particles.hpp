@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Smooths a number that every particle has, by taking it to the nodes and back:
+/// Smooths a scalar q of the particles by a map to the nodes and back:
 ///   q_I = sum_p N_Ip m_p q_p / sum_p N_Ip m_p,   q_p <- sum_I N_Ip q_I.
-/// The sum of m_p q_p stays, and so does a q that is the same everywhere.
+/// The sum of m_p q_p does not change, nor does a uniform q.
 ///
 /// Reads positions, masses and the sorted bins; overwrites q.
 #pragma once

@@ -2,16 +2,16 @@
 /// \file
 /// The static state of linear elastic particles at small strain: nodal displacements u with
 ///   K u = f,   K as in kernels/statics/stiffness.hpp,   f_I of kernels/particles/assemble_forces.hpp,
-/// where f counts the loads, the weight and the initial stress of the particles at their initial positions;
-/// then
+/// where f contains the loads, the weight and the initial stress of the particles at their initial positions.
+/// The solution gives
 ///   sigma_p <- sigma_p + C : sym sum_I u_I (x) grad N_Ip,   x_p <- x_p + sum_I N_Ip u_I,
-/// with the mean divergence where K has it.
-/// Volumes stay, and so do the directions of an initial stress: both change by the order of the strain.
+/// with the mean divergence where K has it. Volumes and the directions of an initial stress are not changed:
+/// the error is of the order of the strain.
 ///
 /// The conjugate gradient method, preconditioned by the blocks K_II. Its residual is measured in the norm of
-/// the preconditioner, |r|^2 = sum_I r_I . K_II^-1 r_I, relative to |f|, so that a node in a nearly empty
-/// cell counts by what its imbalance does, not by its few newtons. Starting from u = 0, a free body under
-/// loads in balance has a solution too: one of many, which differ by rigid motions.
+/// the preconditioner, |r|^2 = sum_I r_I . K_II^-1 r_I, relative to |f|. This norm weighs the small force at
+/// a node in a nearly empty cell by the displacement that it causes. A free body under loads in balance has
+/// many solutions, which differ by rigid motions; starting from u = 0 the method finds one.
 #pragma once
 
 #include <vsb/kernels/particles/ordered_sum.hpp>
@@ -33,8 +33,8 @@ struct StaticResult {
 
 namespace kernel {
 
-/// Components that no force moves: prescribed ones, and all of a node without mass or stiffness. Replaces
-/// K_II by its inverse on the other components; zero on these.
+/// Replaces K_II by its inverse on the components that can move, and by zero on the others: the prescribed
+/// ones, and all of a node without mass or stiffness.
 template <int Dim, class Real, class Device>
 struct InvertBlock {
   Nodes<Dim, Real, Device> nodes;
@@ -122,7 +122,7 @@ struct AdvanceDirection {
   }
 };
 
-/// The sum of the sizes of the force components.
+/// The sum of the absolute values of the force components.
 template <int Dim, class Real, class Device>
 struct ForceSize {
   Nodes<Dim, Real, Device> nodes;
@@ -168,7 +168,7 @@ struct DisplaceParticle {
 
 }  // namespace kernel
 
-/// The sum of the sizes of all force components in nodes.sums, N. Waits for the device.
+/// The sum of the absolute values of all force components in nodes.sums, N. Waits for the device.
 template <class Exec, int Dim, class Real, class Device>
 double sum_of_forces(const Exec& exec, const Nodes<Dim, Real, Device>& nodes) {
   return ordered_sum<1, Device>(exec, "vsb::sum_of_forces", nodes.count(),

@@ -4,8 +4,8 @@
 /// displacements u, and its blocks on the diagonal,
 ///   (K u)_I = sum_p V_p (C : sym G_p) . grad N_Ip,   G_p = sum_J u_J (x) grad N_Jp,
 ///   K_II . e_j = sum_p V_p (C : sym (e_j (x) grad N_Ip)) . grad N_Ip.
-/// Against volumetric locking the divergence of G_p gives way to a mean (physics/mean_divergence.hpp), which
-/// leaves K symmetric; the blocks, which precondition, do without.
+/// Against volumetric locking a mean replaces the divergence of G_p (physics/mean_divergence.hpp); K stays
+/// symmetric. The blocks, which serve as preconditioner, are without the mean.
 ///
 /// Reads positions and volumes of the particles and nodal displacements; writes nodal vectors or blocks.
 #pragma once
@@ -97,8 +97,9 @@ class Stiffness {
         strategy_(strategy),
         volumetric_(volumetric) {}
 
-  /// force <- K u. Both are [node][Dim]; prescribed components are none of its business. Ghost nodes get the
-  /// displacements of their images before the sum, and give them their forces after it.
+  /// force <- K u. Both are [node][Dim]. Prescribed components are treated like all others. Ghost nodes take
+  /// the displacements of their images before the sum; their forces are added to those of the images after
+  /// it.
   template <class Exec>
   void apply(const Exec& exec, const Fields& u, const Fields& force) {
     mirror_vectors(exec, basis_, u);
@@ -112,7 +113,8 @@ class Stiffness {
     fold_ghost_nodes(exec, basis_, force, 0);
   }
 
-  /// block <- K_II, [node][Dim x Dim]; at images of ghost nodes that of both, without what couples them.
+  /// block <- K_II, [node][Dim x Dim]. At the image of a ghost node: the sum of both blocks, without the
+  /// coupling of the two nodes.
   template <class Exec>
   void diagonal_blocks(const Exec& exec, const Fields& block) {
     ScatterWorkspace<Real, Device> workspace;

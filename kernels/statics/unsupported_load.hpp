@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Loads that no support takes up. A body can move rigidly as far as its prescribed components let it; with
-/// the rigid motions R_k (translations, and rotations about the body's middle, scaled to its size), the load
-/// on them is
-///   F_k = sum_I R_k(x_I) . f_I over the free components,
-/// and what no support takes up is the part of F outside the span of the rows R(x_I)_i of the prescribed
-/// components (I, i). A static state exists only where that part is zero. Bodies are told apart by the nodes
-/// that their particles share.
+/// Loads that no support takes up. Prescribed components suppress some of the rigid motions R_k of a body
+/// (translations, and rotations about the body's middle, scaled to its size). The load on a motion is
+///   F_k = sum_I R_k(x_I) . f_I   over the free components.
+/// The unsupported load is the part of F outside the span of the rows R(x_I)_i of the prescribed components
+/// (I, i). A static state exists only where it is zero. Particles that share nodes belong to one body.
 ///
 /// Reads the forces and masses of all nodes. A host loop: it runs once per solution.
 #pragma once
@@ -89,7 +87,7 @@ class OrthonormalSpan {
  public:
   /// v without its part in the span.
   Vector<N, double> outside(Vector<N, double> v) const {
-    for (int pass = 0; pass < 2; ++pass)  // twice: once leaves round-off of the part taken out
+    for (int pass = 0; pass < 2; ++pass)  // twice, since one pass leaves round-off of the removed part
       for (const auto& q : basis_) v -= dot(q, v) * q;
     return v;
   }
