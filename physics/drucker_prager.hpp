@@ -110,7 +110,8 @@ struct DruckerPrager {
       multiplier = dilation > 0
                        ? (friction * mean - strength(kappa)) / (K * friction * dilation + hardening)
                        : J / G;  // the flow direction misses the apex; hardening by the deviator alone
-      mean_excess = mean - strength(kappa + cohesion_factor * multiplier) / friction;
+      // Without friction there is no apex: here round-off has taken the whole deviator.
+      mean_excess = friction > 0 ? mean - strength(kappa + cohesion_factor * multiplier) / friction : Real(0);
     }
     kappa += cohesion_factor * multiplier;
     auto excess = share * stress;

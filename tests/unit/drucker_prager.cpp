@@ -53,6 +53,18 @@ TEST_CASE("the return to the cone by hand") {
   CHECK_THAT(r.state[3], WithinAbs(0.5 * l, 1e-15));
 }
 
+TEST_CASE("von Mises, which has no apex, takes the whole deviator where round-off says so") {
+  const auto m = DruckerPrager<double>::von_mises(77, 0.3, 1e-30, 0);
+  Random random(5);
+  int beyond = 0;  // where G (J / G) > J
+  for (int n = 0; n < 1000; ++n) {
+    const double shear = random(1, 2), G = m.elastic.shear_modulus;
+    beyond += G * (shear / G) > shear;
+    check_stress(returned(m, {{7, 7, 7, shear, 0, 0}}).stress, {{7, 7, 7, 0, 0, 0}});
+  }
+  CHECK(beyond > 0);
+}
+
 TEST_CASE("with hardening the state returned to lies on the cone that has grown") {
   // H = 16, kappa = 1 before: xi (8 + 16) = 12 > 10: elastic; then J = 20: f = 20 - 12 = 8, 36 in place of
   // 32 with xi^2 H = 4.
