@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <map>
+#include <stdexcept>
 
 #include <vsb/kernels/boundary/self_balance.hpp>
 #include <vsb/kernels/step.hpp>
@@ -199,31 +200,39 @@ StressField<Dim, Real> stress_field(const Scene& scene, const StressFieldSpec& s
     return v;
   };
   const auto tensor = [](const Stress6& s) { return to_tensor<Dim, Real>(s); };
-  if (const auto* uniform = std::get_if<Stress6>(&spec)) return UniformStress<Dim, Real>{tensor(*uniform)};
-  if (const auto* affine = std::get_if<Affine<Stress6>>(&spec)) {
-    AffineStress<Dim, Real> field{tensor(affine->value), {}};
-    for (size_t k = 0; k < Dim; ++k) field.gradient[k] = tensor(affine->gradient[k]);
-    return field;
-  }
-  if (const auto* h = std::get_if<HydrostaticSpec>(&spec))
-    return HydrostaticStress<Dim, Real>{number(h->unit_weight), number(h->level), number(h->width),
-                                        vector(h->up)};
-  if (const auto* b = std::get_if<RadialBlendSpec>(&spec)) {
-    Point across{1, 1, 1};
-    if (b->axis >= 0) across[static_cast<size_t>(b->axis)] = 0;
-    return RadialBlend<Dim, Real>{vector(b->center),       vector(across),   number(b->inner_radius),
-                                  number(b->outer_radius), tensor(b->inner), tensor(b->outer)};
-  }
-  if (const auto* b = std::get_if<PlanarBlendSpec>(&spec))
-    return PlanarBlend<Dim, Real>{vector(b->start), vector(b->end) - vector(b->start), tensor(b->at_start),
-                                  tensor(b->at_end)};
-  if constexpr (Dim == 2) {
-    const auto& e = std::get<EllipseSpec>(spec);
-    return ExactEllipse<Real>{number(e.semi_major), number(e.semi_minor),
-                              number(e.pressure),   number(e.far_stress),
-                              number(e.far_ratio),  number(scene.bodies.front().material.poisson_ratio)};
-  }
-  return {};
+  using Field = StressField<Dim, Real>;
+  return std::visit(
+      Overloaded{[&](const Stress6& s) -> Field { return UniformStress<Dim, Real>{tensor(s)}; },
+                 [&](const Affine<Stress6>& affine) -> Field {
+                   AffineStress<Dim, Real> field{tensor(affine.value), {}};
+                   for (size_t k = 0; k < Dim; ++k) field.gradient[k] = tensor(affine.gradient[k]);
+                   return field;
+                 },
+                 [&](const HydrostaticSpec& h) -> Field {
+                   return HydrostaticStress<Dim, Real>{number(h.unit_weight), number(h.level),
+                                                       number(h.width), vector(h.up)};
+                 },
+                 [&](const RadialBlendSpec& b) -> Field {
+                   Point across{1, 1, 1};
+                   if (b.axis >= 0) across[static_cast<size_t>(b.axis)] = 0;
+                   return RadialBlend<Dim, Real>{vector(b.center),       vector(across),
+                                                 number(b.inner_radius), number(b.outer_radius),
+                                                 tensor(b.inner),        tensor(b.outer)};
+                 },
+                 [&](const PlanarBlendSpec& b) -> Field {
+                   return PlanarBlend<Dim, Real>{vector(b.start), vector(b.end) - vector(b.start),
+                                                 tensor(b.at_start), tensor(b.at_end)};
+                 },
+                 [&](const EllipseSpec& e) -> Field {
+                   if constexpr (Dim == 2)
+                     return ExactEllipse<Real>{
+                         number(e.semi_major), number(e.semi_minor),
+                         number(e.pressure),   number(e.far_stress),
+                         number(e.far_ratio),  number(scene.bodies.front().material.poisson_ratio)};
+                   else
+                     throw std::logic_error("exact_ellipse is a field of plane strain");
+                 }},
+      spec);
 }
 
 template <int Dim, class Grid>
