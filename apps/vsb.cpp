@@ -11,6 +11,7 @@
 #include "engine/kokkos_session.hpp"
 #include "engine/simulation.hpp"
 #include "files/hdf5_file.hpp"
+#include "run/check_scene.hpp"
 #include "run/run_scene.hpp"
 #include "run/standard_streams.hpp"
 #include "scene/open_setting.hpp"

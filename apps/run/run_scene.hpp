@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Runs a scene from start to end: the time loop, its checks, and what it writes.
+/// Runs a scene from start to end: by time steps (run/time_loop.hpp), or without any.
 #pragma once
 
 #include <string>
@@ -42,9 +42,5 @@ struct RunResult {
 /// Throws SetupError before anything is written, Diverged, FileError; NotStatic for a static solution;
 /// LeftGrid after the last state and the summary are written.
 RunResult run_scene(const Scene& scene, const RunOptions& options);
-
-/// Prints the resolved scene and what a run of it would cost; writes no file. `placed`: as of RunOptions.
-/// Throws SetupError.
-void check_scene(const Scene& scene, PlacedParticles* placed);
 
 }  // namespace vsb::app
