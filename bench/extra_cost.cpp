@@ -7,6 +7,7 @@
 /// test that of off / off - 1: what the measurement says where there is nothing to be found. Two states
 /// instead of one would differ by several percent from their places in memory alone.
 
+#include "common_steps.hpp"
 #include "registry.hpp"
 
 #include <algorithm>

@@ -2,6 +2,7 @@
 /// \file
 /// The sweeps over cell lanes, marking and packing alone, and the step on cell lanes.
 
+#include "common_steps.hpp"
 #include "lane_checks.hpp"
 #include "registry.hpp"
 

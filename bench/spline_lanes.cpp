@@ -2,6 +2,7 @@
 /// \file
 /// The step with quadratic B-splines: on cell lanes, and by the particle kernels beside it.
 
+#include "common_steps.hpp"
 #include "registry.hpp"
 #include "spline_scene.hpp"
 

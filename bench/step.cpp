@@ -2,6 +2,7 @@
 /// \file
 /// The whole step, with every scatter strategy and load.
 
+#include "common_steps.hpp"
 #include "registry.hpp"
 
 namespace vsb::bench {

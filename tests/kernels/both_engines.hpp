@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <common_steps.hpp>
 #include <map>
 #include <vsb/kernels/lane_step.hpp>
 #include <vsb/kernels/lanes/loads.hpp>

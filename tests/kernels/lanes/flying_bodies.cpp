@@ -3,7 +3,8 @@
 /// A body without load or stress that moves as a whole stays without stress, but for round-off, wherever its
 /// particles pass the faces of cells: jittered, on a lattice whose particles come to lie on faces to the last
 /// bit, and just beside them. Particle kernels and cell lanes, linear functions and B-splines.
-#include <vsb/kernels/lane_step.hpp>
+
+#include <common_steps.hpp>
 
 #include "support.hpp"
 

@@ -2,7 +2,6 @@
 /// \file
 /// N1 and the tractions of nodes on cell lanes: against the particle kernels and against Algorithm 1 written
 /// out, as bodies are packed and as they move.
-#include <vsb/kernels/lane_step.hpp>
 
 #include "algorithm_1.hpp"
 #include "both_engines.hpp"

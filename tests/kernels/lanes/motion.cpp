@@ -3,7 +3,8 @@
 /// Particles on cell lanes from cell to cell: fast flows keep every particle, mass and momentum; what leaves
 /// the grid is reported.
 #include <cstdio>
-#include <vsb/kernels/lane_step.hpp>
+
+#include <common_steps.hpp>
 
 #include "support.hpp"
 

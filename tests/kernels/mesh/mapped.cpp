@@ -2,8 +2,8 @@
 /// \file
 /// Kernels on mapped grids: Algorithm 1 by the logical cells, conservation, the patch test, and the column of
 /// Section 4.1 on its three meshes.
+#include <common_steps.hpp>
 #include <vsb/kernels/readout/health.hpp>
-#include <vsb/kernels/step.hpp>
 #include <vsb/physics/exact_column.hpp>
 
 #include "support.hpp"

@@ -2,10 +2,11 @@
 /// \file
 /// The mean divergence: its formula, with functions that hold too little volume, what a wall mirrors, that it
 /// is symmetric and never more than what it is the mean of, and what a step makes of it.
+#include <common_steps.hpp>
 #include <map>
-#include <vsb/kernels/step.hpp>
 #include <vsb/physics/virtual_stress.hpp>
 
+#include "support.hpp"
 #include "wide_bases.hpp"
 
 using namespace vsb;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// What a material remembers per particle: which rows a body uses, a caller's own array, and what is refused.
-#include <vsb/kernels/step.hpp>
+
+#include <common_steps.hpp>
 
 #include "support.hpp"
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// What a code that embeds vsb may forget: each is answered by an exception that names it, or does no harm.
+#include <common_steps.hpp>
 #include <functional>
-#include <vsb/kernels/lane_step.hpp>
 #include <vsb/kernels/lanes/loads.hpp>
-#include <vsb/kernels/step.hpp>
 #include <vsb/physics/traction_fields.hpp>
 
 #include "support.hpp"

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// Transfers between particles and nodes, whole kernels: what they conserve and what they reproduce exactly.
-#include <vsb/kernels/step.hpp>
+
+#include <common_steps.hpp>
 
 #include "support.hpp"
 

@@ -3,10 +3,11 @@
 /// The stiffness of particles, the static solution, and the search for loads without support, against closed
 /// forms.
 #include <algorithm>
+#include <common_steps.hpp>
 #include <vsb/kernels/statics/static_solution.hpp>
 #include <vsb/kernels/statics/unsupported_load.hpp>
-#include <vsb/kernels/step.hpp>
 
+#include "support.hpp"
 #include "wide_bases.hpp"
 
 using namespace vsb;
