@@ -51,8 +51,13 @@ double strain_by(const Scene& scene, const TractionSpec& traction) {
   return largest_stress(traction.field, box.lower, box.upper) / smallest_modulus(scene);
 }
 
-/// By what the loads displace the softest body, about, in cells of a uniform grid.
+/// By what the loads displace the softest body, about, in cells of a uniform grid; 0 where bodies begin under
+/// stress, which the loads are then to balance.
 double displacement_in_cells(const Scene& scene) {
+  const auto begins_stressed = [](const BodySpec& body) {
+    return body.stress.value != Stress6{} || body.stress.gradient != std::array<Stress6, 3>{};
+  };
+  if (std::any_of(scene.bodies.begin(), scene.bodies.end(), begins_stressed)) return 0;
   double extent = 0;
   const auto grid = bounding_box(scene.grid, scene.dimension);
   for (const auto& body : scene.bodies) {
@@ -110,7 +115,8 @@ constexpr double suspicious_angle = 1.5708;
 
 std::string crossing_text(const std::string& moved) {
   return moved +
-         ": particles under stress cross cells, at whose faces the gradients of linear functions jump (bars at 2 "
+         ": particles under stress cross cells, at whose faces the gradients of linear functions jump (bars "
+         "at 2 "
          "to 10 % strain had stresses 30 to 90 % off); method.basis = \"quadratic_bspline\" (setting = "
          "\"accurate\") does not jump";
 }
@@ -134,11 +140,11 @@ std::vector<std::string> gap_advice(const Scene& scene) {
         const double h = scene.grid.spacing[i];
         const double gap = (side == 0 ? box.lower[i] - grid.lower[i] : grid.upper[i] - box.upper[i]) / h;
         if (gap < 1e-6 || gap >= half_support(scene)) continue;
-        advice.push_back(
-            fmt::format("body '{}' begins {:.3g} cells from the face {}_{} of the grid, which holds it: the "
-                        "face acts across that gap, as if they touched, and stresses beside it are wrong (by "
-                        "up to twice what is right); let the body reach the face, or leave {:g} cells or more",
-                        body.name, gap, "xyz"[i], side == 0 ? "min" : "max", half_support(scene)));
+        advice.push_back(fmt::format(
+            "body '{}' begins {:.3g} cells from the face {}_{} of the grid, which holds it: the "
+            "face acts across that gap, as if they touched, and stresses beside it are wrong (by "
+            "up to twice what is right); let the body reach the face, or leave {:g} cells or more",
+            body.name, gap, "xyz"[i], side == 0 ? "min" : "max", half_support(scene)));
       }
   }
   return advice;
@@ -177,11 +183,12 @@ std::vector<std::string> scene_advice(const Scene& scene) {
           moved));
   if (scene.method.basis == BasisKind::linear && !scene.grid.mapped())
     if (const double moved = displacement_in_cells(scene); moved > crossing_displacement)
-      advice.push_back(crossing_text(fmt::format("the loads displace the bodies by some {:.1g} cells", moved)));
+      advice.push_back(
+          crossing_text(fmt::format("the loads displace the bodies by some {:.1g} cells", moved)));
   for (const auto& body : scene.bodies)
     if (const double angle = degrees(body.material.friction_angle); angle > 0 && angle < suspicious_angle)
       advice.push_back(fmt::format(
-          "body '{}' has friction_angle = {:g} degrees, hardly any: were radians meant, give {:g} degrees",
+          "body '{}' has friction_angle = {:g} degrees, hardly any: were radians meant, give {:.4g}",
           body.name, angle, degrees(angle)));
   for (auto& text : gap_advice(scene)) advice.push_back(std::move(text));
   for (const auto& traction : scene.tractions)
@@ -234,7 +241,8 @@ std::vector<std::string> scene_advice(const Scene& scene) {
 
 std::vector<std::string> crossing_advice(const Scene& scene, double largest_displacement) {
   if (scene.method.basis != BasisKind::linear || scene.grid.mapped() || !scene.time.until_static) return {};
-  const double h = *std::min_element(scene.grid.spacing.begin(), scene.grid.spacing.begin() + scene.dimension);
+  const double h =
+      *std::min_element(scene.grid.spacing.begin(), scene.grid.spacing.begin() + scene.dimension);
   if (!(largest_displacement > crossing_displacement * h)) return {};
   return {crossing_text(fmt::format("particles came to rest up to {:.2g} cells from where they began",
                                     largest_displacement / h))};

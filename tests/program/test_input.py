@@ -13,6 +13,25 @@ from test_bad_scenes import GOOD
 from vsb_program import PROGRAM, SCENES, ProgramTest, last_fields, vsb
 
 
+# A bar of 8 m on a roller, pressed by a twentieth of its modulus: its end moves 0.8 of a cell.
+BAR = """
+dimension = 1
+grid = { lower = [0.0], upper = [10.0], spacing = 0.5 }
+faces = { x_min = "roller" }
+method = { damping = 0.05 }
+time = { kappa = 0.5, until_static = { force_ratio = 1e-4 } }
+[[body]]
+shape = { box = { lower = [0.0], upper = [8.0] } }
+particles_per_cell = 2
+density = 1000.0
+material = { youngs_modulus = 1e6, poisson_ratio = 0.0 }
+[[traction]]
+pressure = 5e4
+nodes = "all"
+time = { ramp = 1.0 }
+"""
+
+
 class Input(ProgramTest):
     def changed(self, old, new, text=GOOD):
         self.assertEqual(text.count(old), 1, old)
@@ -174,6 +193,38 @@ class Input(ProgramTest):
         self.assertLess(across.max(), 0.8)
         self.refuse(good.replace("axis = [1.0, 0.0, 1.0]", "axis = [0.0, 0.0, 0.0]"), "the axis must not be zero")
         self.refuse(good.replace("axis = [1.0, 0.0, 1.0]", "axis = [1.0, 0.0]"), "axis", "an array of 3")
+
+    def test_particles_that_cross_cells_on_linear_functions(self):
+        warned = lambda done: done.stderr.count("cross cells")
+        self.assertEqual(warned(self.check(BAR)), 1)
+        done = vsb("run", self.write(BAR), "--quiet", "--out", self.folder / "bar")
+        self.assertEqual((done.returncode, warned(done)), (0, 2), done.stderr)
+        self.assertRegex(done.stderr, r"came to rest up to 0\.[78]\d* cells from where they began")
+        for quiet in (("--set", "traction[0].pressure=2e4"), ("--set", 'method.basis="quadratic_bspline"')):
+            self.assertEqual(warned(self.check(BAR, *quiet)), 0)
+        gently = vsb("run", self.write(BAR), "--quiet", "--out", self.folder / "gently", "--set", "traction[0].pressure=2e4")
+        self.assertEqual((gently.returncode, warned(gently)), (0, 0), gently.stderr)
+
+    def test_a_body_that_does_not_quite_reach_its_support(self):
+        def warned(lower, *arguments):
+            return "the face acts across that gap" in self.check(BAR.replace("lower = [0.0], upper = [8.0]", f"lower = [{lower}], upper = [8.0]"), *arguments).stderr
+        splines = ("--set", 'method.basis="quadratic_bspline"')
+        self.assertTrue(warned(0.2))
+        self.assertFalse(warned(0.0))
+        self.assertFalse(warned(0.6))
+        self.assertTrue(warned(0.6, *splines))
+        self.assertFalse(warned(0.2, "--set", 'faces.x_min="open"', "--set", "time.until_static=", "--set", "time.steps=1"))
+
+    def test_an_angle_of_friction_in_radians(self):
+        soil = lambda angle: ("--set", f'body[0].material={{ law = "mohr_coulomb", youngs_modulus = 1e6, poisson_ratio = 0.2, cohesion = 1e4, friction_angle = {angle} }}')
+        for angle, told in ((0.5236, True), (30.0, False), (0.0, False)):
+            self.assertEqual("were radians meant, give 30" in self.check(GOOD, *soil(angle)).stderr, told)
+
+    def test_rest_without_any_load(self):
+        ends = ("--set", "traction[0].time={ table = [[0.0, 1.0], [1.0, 0.0]] }")
+        self.refuse(BAR, "time.until_static", "every traction ends at 0", "time.steps", extra=ends)
+        for kept in (("--set", "gravity=[-1.0]"), ("--set", "body[0].stress=[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]")):
+            self.check(BAR, *ends, *kept)
 
     def test_a_scene_that_leaves_its_setting_open_is_told_of_the_accurate_one(self):
         advice = 'setting = "accurate"'
