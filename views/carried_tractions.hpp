@@ -9,15 +9,19 @@
 
 namespace vsb {
 
+/// Which particles carry which tractions, and where these are declared. Tractions are numbered from 0 to 31.
 template <class Device>
 struct CarriedTractions {
+  /// Sets of cells or nodes as bits: bit x % 64 of word x / 64 is cell or node x of a row.
   using Words = Kokkos::View<std::uint64_t***, Kokkos::LayoutRight, Device>;
   Kokkos::View<TractionMask*, Device> particle;  ///< [particle]: the tractions it carries; no rows: none
   TractionMask tractions = 0;                    ///< those that some particle carries
   Words cells;  ///< [traction][row of cells][word]: cells with such particles
   Words nodes;  ///< [traction][row of nodes][word]: where they are declared
 
+  /// Whether any particle carries a traction.
   KOKKOS_FUNCTION bool any() const { return tractions != 0; }
+  /// The number of the highest traction carried, plus one.
   KOKKOS_FUNCTION int count() const {
     int n = 0;
     while (n < 32 && tractions >> n != 0) ++n;

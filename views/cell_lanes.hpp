@@ -35,14 +35,14 @@ enum class GroupLoad : std::uint8_t {
 template <int Dim>
 struct LaneGroup {
   static constexpr int corner_rows =
-      1 << (Dim - 1);     ///< rows of nodes along x; bit i: upper in direction 1 + i
-  int first;              ///< slot
-  int slots;              ///< in use
-  int capacity;           ///< slots that it may use
-  int x;                  ///< cells x * width, ... of the box's row
-  int row;                ///< of cells in the box
-  int node[corner_rows];  ///< the lower node of lane 0 in every corner row
-  GroupLoad load;
+      1 << (Dim - 1);                 ///< rows of nodes along x; bit i: upper in direction 1 + i
+  int first;                          ///< slot
+  int slots;                          ///< in use
+  int capacity;                       ///< slots that it may use
+  int x;                              ///< cells x * width, ... of the box's row
+  int row;                            ///< of cells in the box
+  int node[corner_rows];              ///< the lower node of lane 0 in every corner row
+  GroupLoad load;                     ///< how tractions act on its nodes
   TractionMask tractions;             ///< of the loaded nodes, where they have the same
   std::uint64_t loaded[corner_rows];  ///< bit l: the lower node of lane l is loaded, up to l = width
 };
@@ -60,22 +60,26 @@ struct LaneStencil {
 template <int Dim>
 struct CellBox {
   Vector<Dim, int> first;  ///< lowest cell
-  Vector<Dim, int> cells;
+  Vector<Dim, int> cells;  ///< their number in each direction
 };
 
+/// Particles packed by cell, and the groups, cells and nodes of their box; the top of this file tells how.
+/// kernels/lanes/build.hpp makes one. Copying the bundle copies no data.
 template <int Dim, class Real, class Device>
 struct CellLanes {
-  static constexpr int width = Lanes<Real>::width;
-  static constexpr int stress_size = symmetric_components(Dim);
-  using P = typename Lanes<Real>::Pack;
-  using Columns = Kokkos::View<Real**, Kokkos::LayoutLeft, Device>;
-  using Ints = Kokkos::View<int*, Device>;
+  static constexpr int width = Lanes<Real>::width;                   ///< cells of a group, lanes of a pack
+  static constexpr int stress_size = symmetric_components(Dim);      ///< stored stress components: 3, 4 or 6
+  using P = typename Lanes<Real>::Pack;                              ///< one number of every cell of a group
+  using Columns = Kokkos::View<Real**, Kokkos::LayoutLeft, Device>;  ///< one column per number of a particle
+  using Ints = Kokkos::View<int*, Device>;  ///< numbers of particles, groups and nodes
 
+  ///@{
   /// The columns of a particle: xi, velocity in m/s, mass, volume, Cauchy stress, material state; units as in
   /// Particles.
   static constexpr int xi_column = 0, velocity_column = Dim, mass_column = 2 * Dim,
                        volume_column = 2 * Dim + 1, stress_column = 2 * Dim + 2,
                        state_column = 2 * Dim + 2 + stress_size;
+  ///@}
 
   Columns data;                          ///< [slot * width + lane][column]
   Ints id;                               ///< [slot * width + lane]: number of the particle; ghosts: -1
@@ -87,26 +91,37 @@ struct CellLanes {
   Ints group_at;  ///< [row of cells][groups per row]: number, -1 where there is none
   Ints chunk_at;  ///< [row of nodes][groups per row + 1]: `width` nodes side by side
   Kokkos::View<Real*, Device>
-      mass_matrices;  ///< [(group * 3^Dim + number) * width + lane], kg, numbers as in
-                      ///< physics/cell_mass_matrix.hpp; empty: steps take two sweeps
-  CellBox<Dim> box;
+      mass_matrices;   ///< [(group * 3^Dim + number) * width + lane], kg, numbers as in
+                       ///< physics/cell_mass_matrix.hpp; empty: steps take two sweeps
+  CellBox<Dim> box;    ///< the cells of the scene's grid that are stored; the outermost ones are void
   bool dual = false;   ///< whether cells are those around the nodes of a scene's grid
   int state_size = 0;  ///< numbers of material state per particle
+  ///@{
+  /// The numbers in use: of groups, of their slots, and of the nodes that they store.
   int group_count = 0, slot_count = 0, node_count = 0;
-  int particle_count = 0;
+  ///@}
+  int particle_count = 0;  ///< particles in the lanes, without ghosts
 
+  /// Stored numbers of a cell's mass matrix, which is symmetric and of product form: 3^Dim.
   static constexpr int mass_matrix_size = Dim == 1 ? 3 : Dim == 2 ? 9 : 27;
   /// Whether steps re-map by the mass matrices of the cells, in one sweep over the particles.
   KOKKOS_FUNCTION bool one_sweep() const { return mass_matrices.size() > 0; }
+  /// Where one of the 3^Dim numbers of a group's mass matrices begins, in kg: `width` entries, one per cell.
   KOKKOS_FORCEINLINE_FUNCTION Real* mass_matrix_at(int group, int number) const {
     return mass_matrices.data() +
            (static_cast<size_t>(group) * mass_matrix_size + static_cast<size_t>(number)) * width;
   }
+  /// Groups that a full row of cells takes, the last one in part.
   KOKKOS_FUNCTION int groups_per_row() const { return (box.cells[0] + width - 1) / width; }
+  /// Layers of cells of the box.
   KOKKOS_FUNCTION int layers() const { return Dim == 1 ? 1 : box.cells[Dim - 1]; }
+  /// Rows of cells along x in one layer.
   KOKKOS_FUNCTION int rows_per_layer() const { return Dim == 3 ? box.cells[1 % Dim] : 1; }
+  /// Rows of cells of the box; row % rows_per_layer() is j, row / rows_per_layer() the layer.
   KOKKOS_FUNCTION int row_count() const { return layers() * rows_per_layer(); }
+  /// Rows of nodes along x in one node plane.
   KOKKOS_FUNCTION int node_rows_per_plane() const { return Dim == 3 ? box.cells[1 % Dim] + 1 : 1; }
+  /// Columns of `data` in use.
   KOKKOS_FUNCTION int columns() const { return state_column + state_size; }
   /// The row of nodes at corner row c of a row of cells.
   KOKKOS_FUNCTION int node_row(int row, int c) const {
@@ -120,6 +135,7 @@ struct CellLanes {
     const int j = row % rows_per_layer(), k = row / rows_per_layer();
     return Dim == 3 ? (k + r / 3) * node_rows_per_plane() + j + r % 3 : k + r;
   }
+  ///@{
   /// The number of node rows of a cell, and row r of them, for either kind of cells.
   KOKKOS_FUNCTION int node_rows_of_cell() const {
     return dual ? LaneStencil<Dim>::rows : LaneGroup<Dim>::corner_rows;
@@ -127,6 +143,7 @@ struct CellLanes {
   KOKKOS_FUNCTION int node_row_of_cell(int row, int r) const {
     return dual ? stencil_row(row, r) : node_row(row, r);
   }
+  ///@}
   /// The lowest node (i, j, k) of the box in the scene's grid. The outermost cells are void, so that dual
   /// cells need no more nodes than others.
   KOKKOS_FUNCTION Vector<Dim, int> lowest_node() const {
@@ -160,6 +177,7 @@ struct CellLanes {
     return c;
   }
 
+  ///@{
   /// The entries of a group's lane 0, one `width` after the other: begin, ..., end - width.
   KOKKOS_FORCEINLINE_FUNCTION size_t begin(const LaneGroup<Dim>& group) const {
     return static_cast<size_t>(group.first) * width;
@@ -167,27 +185,35 @@ struct CellLanes {
   KOKKOS_FORCEINLINE_FUNCTION size_t end(const LaneGroup<Dim>& group) const {
     return static_cast<size_t>(group.first + group.slots) * width;
   }
+  ///@}
 
+  /// Where an entry of a column is stored. `entry` is (slot * width + lane); of a pack, that of lane 0.
   KOKKOS_FORCEINLINE_FUNCTION Real* at(int column, size_t entry) const {
     return data.data() + static_cast<size_t>(column) * data.stride(1) + entry;
   }
+  /// The numbers of a column in all lanes of a slot; `entry` is that of lane 0.
   KOKKOS_FORCEINLINE_FUNCTION P load(int column, size_t entry) const { return P::load(at(column, entry)); }
+  /// Writes a column in all lanes of a slot; `entry` is that of lane 0.
   KOKKOS_FORCEINLINE_FUNCTION void store(int column, size_t entry, P value) const {
     value.store(at(column, entry));
   }
+  /// N columns from `column` on, in all lanes of a slot.
   template <int N>
   KOKKOS_FORCEINLINE_FUNCTION Vector<N, P> load_row(int column, size_t entry) const {
     Vector<N, P> v;
     static_for<N>([&](auto i) VSB_UNROLLED { v[i] = load(column + i, entry); });
     return v;
   }
+  /// Writes Row::size columns from `column` on, in all lanes of a slot.
   template <class Row>
   KOKKOS_FORCEINLINE_FUNCTION void store_row(int column, size_t entry, const Row& v) const {
     static_for<Row::size>([&](auto i) VSB_UNROLLED { store(column + i, entry, v[i]); });
   }
+  /// The position in the cell, [0, 1)^Dim, in all lanes of a slot.
   KOKKOS_FORCEINLINE_FUNCTION Vector<Dim, P> load_xi(size_t entry) const {
     return load_row<Dim>(xi_column, entry);
   }
+  /// The Cauchy stress in Pa, in all lanes of a slot.
   KOKKOS_FORCEINLINE_FUNCTION SymmetricTensor<Dim, P> load_stress(size_t entry) const {
     SymmetricTensor<Dim, P> s;
     static_for<stress_size>([&](auto c) VSB_UNROLLED { s[c] = load(stress_column + c, entry); });
@@ -217,14 +243,19 @@ struct CellLanes {
 /// Nodes of the cell lanes, in chunks of `width` side by side.
 template <int Dim, class Real, class Device>
 struct LaneNodes {
+  /// Columns of one set of sums: mass, momentum, force.
   static constexpr int sum_columns = 1 + 2 * Dim;
+  ///@{
+  /// The columns of `data`: the sums of the layers above and below the node, dt a, dt v, dt v*, 1 / m. Only
+  /// dual cells have the sums of a layer in the middle.
   static constexpr int lower_sums = 0, upper_sums = sum_columns, increment_column = 2 * sum_columns,
                        displacement_column = increment_column + Dim,
                        remapped_column = displacement_column + Dim,
                        inverse_mass_column = remapped_column + Dim, column_count = inverse_mass_column + 1;
   /// Dual cells: sums of the plane in the middle of a layer.
   static constexpr int middle_sums = column_count, dual_column_count = column_count + sum_columns;
-  using P = typename Lanes<Real>::Pack;
+  ///@}
+  using P = typename Lanes<Real>::Pack;                   ///< one number of `width` nodes side by side
   Kokkos::View<Real**, Kokkos::LayoutLeft, Device> data;  ///< [node][column]: lower and upper sums of mass in
                                                           ///< kg, momentum in kg m/s and force in N; dt a in
                                                           ///< m/s; dt v and dt v* in cells; 1 / m
@@ -238,9 +269,11 @@ struct LaneNodes {
   KOKKOS_FUNCTION static constexpr int sums_of_plane(int plane) {
     return plane == 0 ? lower_sums : plane == 1 ? middle_sums : upper_sums;
   }
+  /// Where a number of a node is stored.
   KOKKOS_FORCEINLINE_FUNCTION Real* at(int column, int node) const {
     return data.data() + static_cast<size_t>(column) * data.stride(1) + node;
   }
+  /// A column of `width` nodes from `node` on.
   KOKKOS_FORCEINLINE_FUNCTION P load(int column, int node) const { return P::load(at(column, node)); }
 };
 
@@ -248,20 +281,26 @@ struct LaneNodes {
 /// layer came to the slots.
 template <int Dim, class Real, class Device>
 struct Leavers {
+  /// Lanes of a slot.
   static constexpr int width = Lanes<Real>::width;
+  /// Who left a slot, and where to.
   struct Head {
-    int x, row;                    ///< of the group they left
+    ///@{
+    /// Of the group that they left.
+    int x, row;
+    ///@}
     LaneMask to[3];                ///< lanes whose particle goes to the layer below, the same, the one above
     LaneMask far;                  ///< lanes whose particle goes farther
     LaneMask homeless[3];          ///< of `to`, those that found no place; of `far`, with the same layer
     int id[width];                 ///< of the particle in a lane
     Vector<Dim, int> cell[width];  ///< where to; only of lanes that lost their particle
+    /// The lanes whose particle found no place in its new cell.
     KOKKOS_FUNCTION LaneMask without_place() const { return homeless[0] | homeless[1] | homeless[2]; }
   };
   Kokkos::View<Real**, Kokkos::LayoutRight, Device> data;  ///< [copy][column of CellLanes * width + lane]
   Kokkos::View<Head*, Device> head;                        ///< [copy]
   Kokkos::View<int*, Device> first;                        ///< [layer]: first copy of the list of the layer
-  Kokkos::View<int*, Device> count;                        ///< [layer]: copies
+  Kokkos::View<int*, Device> count;                        ///< [layer]: number of copies
   Kokkos::View<int*, Device> lost;                         ///< [layer]: particles in them
   Kokkos::View<int*, Device> many;      ///< [layer]: 1 where so many left that the sums of the layers around
                                         ///< are to be made anew

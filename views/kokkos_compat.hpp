@@ -45,6 +45,7 @@ using Kokkos::Experimental::log1p;
 using Kokkos::Experimental::sin;
 using Kokkos::Experimental::sqrt;
 
+/// The absolute value.
 template <class T>
 KOKKOS_INLINE_FUNCTION T abs(T x) {
   return x < T(0) ? -x : x;
@@ -52,6 +53,7 @@ KOKKOS_INLINE_FUNCTION T abs(T x) {
 
 #endif
 
+///@{
 /// The numbers of std::numeric_limits, whose functions are the host's alone.
 template <class T>
 constexpr T epsilon = std::numeric_limits<T>::epsilon();
@@ -59,12 +61,15 @@ template <class T>
 constexpr T infinity = std::numeric_limits<T>::infinity();
 template <class T>
 constexpr T smallest_normal = std::numeric_limits<T>::min();
+///@}
 
+/// The smaller number; a where neither is smaller, as with a NaN.
 template <class T>
 KOKKOS_INLINE_FUNCTION T min(T a, T b) {
   return b < a ? b : a;
 }
 
+/// The larger number; a where neither is larger, as with a NaN.
 template <class T>
 KOKKOS_INLINE_FUNCTION T max(T a, T b) {
   return a < b ? b : a;
@@ -83,6 +88,7 @@ constexpr void require_reach() {
 /// A named region in Kokkos Tools for the lifetime of the object (Kokkos has its own from 4.1 on).
 class ProfilingRegion {
  public:
+  /// Opens the region of this name.
   explicit ProfilingRegion(const std::string& label) { Kokkos::Profiling::pushRegion(label); }
   ~ProfilingRegion() { Kokkos::Profiling::popRegion(); }
   ProfilingRegion(const ProfilingRegion&) = delete;

@@ -13,9 +13,9 @@ namespace vsb {
 /// position of its particle and moves with the same velocities. It does not need the entry of its particle.
 template <int Dim, class Real, class Device>
 struct LaneSurfacePoints {
-  using Fields = Kokkos::View<Real**, Kokkos::LayoutRight, Device>;
-  using Ints = Kokkos::View<int*, Device>;
-  Kokkos::View<int* [Dim], Device> cell;          ///< [point][Dim], of the grid
+  using Fields = Kokkos::View<Real**, Kokkos::LayoutRight, Device>;  ///< one row per point
+  using Ints = Kokkos::View<int*, Device>;                           ///< numbers of points and cells
+  Kokkos::View<int* [Dim], Device> cell;                             ///< [point][Dim], of the grid
   Fields xi;                                      ///< [point][Dim]: position in the cell, in [0, 1)
   Fields area;                                    ///< [point][Dim]: as in SurfacePoints
   Kokkos::View<TractionMask*, Device> tractions;  ///< [point]: the tractions that act on it
@@ -29,13 +29,17 @@ struct LaneSurfacePoints {
   int runs = 0;     ///< of points in the box
   bool sorted = false;  ///< whether all this is up to date for `box`
 
+  /// Number of surface points.
   KOKKOS_FUNCTION int count() const { return static_cast<int>(xi.extent(0)); }
+  /// The cell (i, j, k) of the grid in which a point is.
   KOKKOS_FUNCTION Vector<Dim, int> cell_of(int b) const {
     Vector<Dim, int> c;
     for (int i = 0; i < Dim; ++i) c[i] = cell(b, i);
     return c;
   }
+  /// The position of a point in its cell, [0, 1)^Dim.
   KOKKOS_FUNCTION Vector<Dim, Real> xi_of(int b) const { return row(xi, b); }
+  /// Area times outward unit normal of a point; m^2 (1 in 1D, m in 2D).
   KOKKOS_FUNCTION Vector<Dim, Real> area_of(int b) const { return row(area, b); }
 
  private:

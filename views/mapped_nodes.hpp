@@ -7,6 +7,8 @@
 
 namespace vsb {
 
+/// Views of what a mapped grid reads; physics/mapped_grid.hpp computes with them,
+/// kernels/mesh/make_mapped_mesh.hpp fills them.
 template <class Real, class Device>
 struct MappedNodes {
   Kokkos::View<Real**, Kokkos::LayoutRight, Device> position;  ///< [node][Dim], m

@@ -12,12 +12,12 @@ namespace vsb {
 /// (mass, momentum, force); accessors give them their names.
 template <int Dim, class Real, class Device>
 struct Nodes {
-  static constexpr int dimension = Dim;
+  static constexpr int dimension = Dim;  ///< of space: 1, 2 or 3
   /// Columns of `sums`.
   static constexpr int sum_columns = 1 + 2 * Dim;
-  using real = Real;
-  using device = Device;
-  using Fields = Kokkos::View<Real**, Kokkos::LayoutRight, Device>;
+  using real = Real;                                                 ///< type of the numbers
+  using device = Device;                                             ///< where the memory is
+  using Fields = Kokkos::View<Real**, Kokkos::LayoutRight, Device>;  ///< one row per node
 
   Fields sums;               ///< [node][1 + 2 Dim]: mass in kg, momentum in kg m/s, force in N
   Fields acceleration;       ///< [node][Dim], m/s^2; zero in prescribed components
@@ -26,9 +26,13 @@ struct Nodes {
                              ///< momentum)
   Kokkos::View<ComponentMask*, Device> fixed_components;  ///< [node]: prescribed velocity components
 
+  /// Number of nodes.
   KOKKOS_FUNCTION int count() const { return static_cast<int>(sums.extent(0)); }
+  /// The mass of a node in kg (kg/m^2 in 1D, kg/m in 2D); Eq. (10).
   KOKKOS_FUNCTION Real& mass(int node) const { return sums(node, 0); }
+  /// Component i of the momentum of a node, kg m/s.
   KOKKOS_FUNCTION Real& momentum(int node, int i) const { return sums(node, 1 + i); }
+  /// Component i of the force on a node, N; internal and external together.
   KOKKOS_FUNCTION Real& force(int node, int i) const { return sums(node, 1 + Dim + i); }
 };
 

@@ -25,9 +25,9 @@ struct PackProduct;
 /// A truth value per lane: all bits set, or none.
 template <class T, int W>
 struct PackMask {
-  using Word = std::conditional_t<sizeof(T) == 8, std::int64_t, std::int32_t>;
-  using Native = typename detail::VectorOf<Word, W>::Aligned;
-  Native v;
+  using Word = std::conditional_t<sizeof(T) == 8, std::int64_t, std::int32_t>;  ///< an integer as wide as T
+  using Native = typename detail::VectorOf<Word, W>::Aligned;  ///< the compiler's vector of W of them
+  Native v;                                                    ///< word l is -1 where lane l is true, else 0
 
   /// Lane l is true where bit l is set.
   KOKKOS_FORCEINLINE_FUNCTION static PackMask from_bits(std::uint64_t bits) {
@@ -35,12 +35,17 @@ struct PackMask {
     for (int l = 0; l < W; ++l) lane[l] = Word(1) << l;
     return {(detail::repeated<Native>(static_cast<Word>(bits)) & lane) != Native{}};
   }
+  ///@{
+  /// Lane by lane.
   KOKKOS_FORCEINLINE_FUNCTION friend PackMask operator&(PackMask a, PackMask b) { return {a.v & b.v}; }
   KOKKOS_FORCEINLINE_FUNCTION friend PackMask operator|(PackMask a, PackMask b) { return {a.v | b.v}; }
   KOKKOS_FORCEINLINE_FUNCTION PackMask operator!() const { return {~v}; }
+  ///@}
+  /// Whether a lane in [0, W) is true.
   KOKKOS_FORCEINLINE_FUNCTION bool operator[](int lane) const { return v[lane] != 0; }
 };
 
+/// Whether at least one lane is true.
 template <class T, int W>
 KOKKOS_FORCEINLINE_FUNCTION bool any(PackMask<T, W> mask) {
 #if defined(VSB_PACK_FMA)
@@ -66,27 +71,35 @@ KOKKOS_FORCEINLINE_FUNCTION std::uint32_t bits_of(PackMask<T, W> mask) {
   return bits;
 }
 
+/// W numbers of type float or double, one per lane. Without initialiser they have no value.
 template <class T, int W>
 struct Pack {
-  static constexpr int width = W;
-  using value_type = T;
-  using Mask = PackMask<T, W>;
-  using Native = typename detail::VectorOf<T, W>::Aligned;
-  using Unaligned = typename detail::VectorOf<T, W>::Unaligned;
-  Native v;
+  static constexpr int width = W;                                ///< lanes
+  using value_type = T;                                          ///< type of a lane
+  using Mask = PackMask<T, W>;                                   ///< what comparisons give
+  using Native = typename detail::VectorOf<T, W>::Aligned;       ///< the compiler's vector
+  using Unaligned = typename detail::VectorOf<T, W>::Unaligned;  ///< the same, at any address
+  Native v;                                                      ///< number l is that of lane l
 
   Pack() = default;
+  /// Of the compiler's own vector.
   KOKKOS_FORCEINLINE_FUNCTION Pack(Native n) : v(n) {}
+  /// x in every lane.
   KOKKOS_FORCEINLINE_FUNCTION Pack(T x) : v(detail::repeated<Native>(x)) {}
 
   /// Of W numbers side by side, wherever they begin.
   KOKKOS_FORCEINLINE_FUNCTION static Pack load(const T* from) {
     return Native(*reinterpret_cast<const Unaligned*>(from));
   }
+  /// Writes W numbers side by side, wherever they begin.
   KOKKOS_FORCEINLINE_FUNCTION void store(T* to) const { *reinterpret_cast<Unaligned*>(to) = v; }
+  /// The number in a lane in [0, W).
   KOKKOS_FORCEINLINE_FUNCTION T operator[](int lane) const { return v[lane]; }
+  /// Replaces the number in a lane in [0, W).
   KOKKOS_FORCEINLINE_FUNCTION void set(int lane, T x) { v[lane] = x; }
 
+  ///@{
+  /// Lane by lane. A product stays open until it is added to something, so that both are rounded once.
   KOKKOS_FORCEINLINE_FUNCTION friend Pack operator+(Pack a, Pack b) { return a.v + b.v; }
   KOKKOS_FORCEINLINE_FUNCTION friend Pack operator-(Pack a, Pack b) { return a.v - b.v; }
   KOKKOS_FORCEINLINE_FUNCTION friend PackProduct<T, W> operator*(Pack a, Pack b) { return {a, b}; }
@@ -101,12 +114,16 @@ struct Pack {
   KOKKOS_FORCEINLINE_FUNCTION Pack& operator-=(const PackProduct<T, W>& p) {
     return *this = fused(-p.a, p.b, *this);
   }
+  ///@}
 
+  ///@{
+  /// Lane by lane; false where a lane is a NaN.
   KOKKOS_FORCEINLINE_FUNCTION friend Mask operator<(Pack a, Pack b) { return {a.v < b.v}; }
   KOKKOS_FORCEINLINE_FUNCTION friend Mask operator>(Pack a, Pack b) { return {a.v > b.v}; }
   KOKKOS_FORCEINLINE_FUNCTION friend Mask operator>=(Pack a, Pack b) { return {a.v >= b.v}; }
   KOKKOS_FORCEINLINE_FUNCTION friend Mask operator<=(Pack a, Pack b) { return {a.v <= b.v}; }
   KOKKOS_FORCEINLINE_FUNCTION friend Mask operator==(Pack a, Pack b) { return {a.v == b.v}; }
+  ///@}
 
   /// a b + c, rounded once where the machine can.
   KOKKOS_FORCEINLINE_FUNCTION static Pack fused(Pack a, Pack b, Pack c) {
@@ -128,10 +145,17 @@ struct Pack {
 /// The product of two packs, not yet rounded; becomes one where nothing is added to it.
 template <class T, int W>
 struct PackProduct {
-  using P = Pack<T, W>;
+  using P = Pack<T, W>;  ///< what the product becomes
+  ///@{
+  /// The factors.
   P a, b;
+  ///@}
 
+  /// The product, rounded.
   KOKKOS_FORCEINLINE_FUNCTION operator P() const { return a.v * b.v; }
+  ///@{
+  /// Lane by lane. A product and what it is added to are rounded once (Pack::fused). Of two products, the one
+  /// that is no longer open is rounded by itself before.
   KOKKOS_FORCEINLINE_FUNCTION PackProduct operator-() const { return {-a, b}; }
 
   KOKKOS_FORCEINLINE_FUNCTION friend P operator+(PackProduct p, P c) { return P::fused(p.a, p.b, c); }
@@ -145,14 +169,15 @@ struct PackProduct {
   KOKKOS_FORCEINLINE_FUNCTION friend PackProduct operator*(PackProduct p, PackProduct q) {
     return {P(p), P(q)};
   }
+  ///@}
 };
 
 /// What kernels on cell lanes compute with: `bytes` bytes' worth of numbers.
 template <class Real>
 struct Lanes {
-  static constexpr int bytes = 32;
-  static constexpr int width = bytes / static_cast<int>(sizeof(Real));
-  using Pack = vsb::Pack<Real, width>;
+  static constexpr int bytes = 32;                                      ///< of a register with AVX2
+  static constexpr int width = bytes / static_cast<int>(sizeof(Real));  ///< lanes: 4 of double, 8 of float
+  using Pack = vsb::Pack<Real, width>;                                  ///< one number in each lane
 };
 
 namespace detail {
@@ -225,6 +250,7 @@ KOKKOS_FORCEINLINE_FUNCTION Pack<T, W> keep_lanes(std::uint64_t bits, Pack<T, W>
 }
 
 namespace math {
+///@{
 /// a where the condition holds, else b.
 template <class T>
 KOKKOS_FORCEINLINE_FUNCTION T select(bool condition, T a, T b) {
@@ -234,10 +260,13 @@ template <class T, int W>
 KOKKOS_FORCEINLINE_FUNCTION Pack<T, W> select(PackMask<T, W> condition, Pack<T, W> a, Pack<T, W> b) {
   return detail::chosen(condition.v, a.v, b.v);
 }
+///@}
+/// The absolute value, lane by lane.
 template <class T, int W>
 KOKKOS_FORCEINLINE_FUNCTION Pack<T, W> abs(Pack<T, W> x) {
   return select(x < Pack<T, W>(T(0)), -x, x);
 }
+/// The exponential, by the scalar function in each lane.
 template <class T, int W>
 KOKKOS_INLINE_FUNCTION Pack<T, W> exp(Pack<T, W> x) {
   for (int l = 0; l < W; ++l) x.set(l, exp(x[l]));

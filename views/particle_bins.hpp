@@ -12,7 +12,7 @@ namespace vsb {
 /// that a sum over a bin is the same whatever ran in parallel.
 template <class Device>
 struct ParticleBins {
-  using Ints = Kokkos::View<int*, Device>;
+  using Ints = Kokkos::View<int*, Device>;  ///< numbers of particles and bins
   Ints bin;       ///< [particle]: its bin, -1 before the first call of locate_particles
   Ints order;     ///< [particle]: particle numbers, sorted by bin
   Ints offset;    ///< [bins + 1]: where a bin starts in `order`
@@ -21,6 +21,7 @@ struct ParticleBins {
   Ints occupied;  ///< [bins]: the occupied bins, in increasing order
   Kokkos::View<int, Kokkos::HostSpace> filled;  ///< how many are occupied; shared by copies, as the rest is
 
+  /// How many bins hold a particle; 0 before the bins are allocated.
   int occupied_count() const { return filled.data() == nullptr ? 0 : filled(); }
 };
 

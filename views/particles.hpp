@@ -15,12 +15,12 @@ namespace vsb {
 /// Copying the bundle copies no data.
 template <int Dim, class Real, class Device>
 struct Particles {
-  static constexpr int dimension = Dim;
-  static constexpr int stress_size = symmetric_components(Dim);
-  using real = Real;
-  using device = Device;
-  using Scalars = Kokkos::View<Real*, Kokkos::LayoutStride, Device>;
-  using Fields = Kokkos::View<Real**, Kokkos::LayoutStride, Device>;
+  static constexpr int dimension = Dim;                               ///< of space: 1, 2 or 3
+  static constexpr int stress_size = symmetric_components(Dim);       ///< stored stress components: 3, 4 or 6
+  using real = Real;                                                  ///< type of the numbers
+  using device = Device;                                              ///< where the memory is
+  using Scalars = Kokkos::View<Real*, Kokkos::LayoutStride, Device>;  ///< one number per particle
+  using Fields = Kokkos::View<Real**, Kokkos::LayoutStride, Device>;  ///< one row per particle
 
   Fields position;        ///< [particle][Dim], m
   Fields velocity;        ///< [particle][Dim], m/s
@@ -48,14 +48,18 @@ struct Particles {
   /// The rows of `position`: marking the boundary needs no other field.
   KOKKOS_FUNCTION int count() const { return static_cast<int>(position.extent(0)); }
 
+  /// The first N columns of a field at particle p.
   template <int N>
   KOKKOS_FUNCTION static Vector<N, Real> row(const Fields& field, int p) {
     Vector<N, Real> v;
     for (int i = 0; i < N; ++i) v[i] = field(p, i);
     return v;
   }
+  /// The position of particle p, m.
   KOKKOS_FUNCTION Vector<Dim, Real> position_of(int p) const { return row<Dim>(position, p); }
+  /// The velocity of particle p, m/s.
   KOKKOS_FUNCTION Vector<Dim, Real> velocity_of(int p) const { return row<Dim>(velocity, p); }
+  /// The Cauchy stress of particle p in Pa, tension positive.
   KOKKOS_FUNCTION SymmetricTensor<Dim, Real> stress_of(int p) const {
     SymmetricTensor<Dim, Real> s;
     for (int c = 0; c < stress_size; ++c) s[c] = cauchy_stress(p, c);
@@ -114,10 +118,10 @@ int padded_rows(int n) {
 /// device (or a file) a single transfer.
 template <int Dim, class Real, class Device>
 struct ParticleBlock {
-  using Block = Kokkos::View<Real**, Kokkos::LayoutLeft, Device>;
-  Block block;        ///< [padded particle][columns]
-  Block state_block;  ///< [padded row][columns] of material_state; empty without it
-  Particles<Dim, Real, Device> particles;
+  using Block = Kokkos::View<Real**, Kokkos::LayoutLeft, Device>;  ///< one column per component
+  Block block;                                                     ///< [padded particle][columns]
+  Block state_block;                       ///< [padded row][columns] of material_state; empty without it
+  Particles<Dim, Real, Device> particles;  ///< Views of the two blocks
 
   ParticleBlock() = default;
   /// Wraps a block that has the columns position, velocity, mass, volume, stress, for n particles.
@@ -139,6 +143,7 @@ struct ParticleBlock {
     state_block = std::move(b);
     particles.material_state = Kokkos::subview(state_block, std::make_pair(0, rows), Kokkos::ALL());
   }
+  /// Columns of `block`.
   static constexpr int columns() { return 2 * Dim + 2 + Particles<Dim, Real, Device>::stress_size; }
 };
 

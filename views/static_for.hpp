@@ -29,6 +29,7 @@ KOKKOS_FORCEINLINE_FUNCTION constexpr void static_for(const Body& body, std::int
 }
 }  // namespace detail
 
+/// Calls body(0), ..., body(N - 1) in this order; the argument converts to a constant int.
 VSB_ANY_CALLABLE
 template <int N, class Body>
 KOKKOS_FORCEINLINE_FUNCTION constexpr void static_for(const Body& body) {

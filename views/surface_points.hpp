@@ -18,19 +18,23 @@ enum SurfaceCarrier : int {
 /// Surface points, one row each, with the nodal sums of their forces. Without points nothing is allocated.
 template <int Dim, class Real, class Device>
 struct SurfacePoints {
-  using Fields = Kokkos::View<Real**, Kokkos::LayoutRight, Device>;
-  Fields position;  ///< [point][Dim], m
-  Fields area;      ///< [point][Dim]: area times outward unit normal of the deformed surface, m^2 (1 in 1D, m
-                    ///< in 2D)
+  using Fields = Kokkos::View<Real**, Kokkos::LayoutRight, Device>;  ///< one row per point or node
+  Fields position;                                                   ///< [point][Dim], m
+  Fields area;  ///< [point][Dim]: area times outward unit normal of the deformed surface, m^2 (1 in 1D, m
+                ///< in 2D)
   Kokkos::View<TractionMask*, Device> tractions;  ///< [point]: the tractions that act on it
   Kokkos::View<int*, Device> carrier;             ///< [point]: see SurfaceCarrier
   Fields force;                                   ///< [point][Dim]: traction times area, N
   ParticleBins<Device> bins;                      ///< which points share their support nodes
   Fields node_force;                              ///< [node][Dim], N
 
+  /// Number of surface points.
   KOKKOS_FUNCTION int count() const { return static_cast<int>(position.extent(0)); }
+  /// The position of a point, m.
   KOKKOS_FUNCTION Vector<Dim, Real> position_of(int b) const { return row(position, b); }
+  /// Area times outward unit normal of a point; m^2 (1 in 1D, m in 2D).
   KOKKOS_FUNCTION Vector<Dim, Real> area_of(int b) const { return row(area, b); }
+  /// Traction times area of a point, N.
   KOKKOS_FUNCTION Vector<Dim, Real> force_of(int b) const { return row(force, b); }
 
  private:

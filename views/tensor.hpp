@@ -11,17 +11,23 @@ namespace vsb {
 /// N numbers: a point, a velocity, a force.
 template <int N, class T>
 struct Vector {
-  static constexpr int size = N;
-  T data[N];
+  static constexpr int size = N;  ///< number of components
+  T data[N];                      ///< by direction x, y, z
 
+  /// The null vector.
   KOKKOS_FUNCTION static Vector zero() {
     Vector v;
     for (int i = 0; i < N; ++i) v.data[i] = T(0);
     return v;
   }
+  ///@{
+  /// Component i in [0, N).
   KOKKOS_FUNCTION T& operator[](int i) { return data[i]; }
   KOKKOS_FUNCTION const T& operator[](int i) const { return data[i]; }
+  ///@}
 
+  ///@{
+  /// Component by component.
   KOKKOS_FUNCTION Vector& operator+=(const Vector& b) {
     for (int i = 0; i < N; ++i) data[i] += b.data[i];
     return *this;
@@ -37,8 +43,10 @@ struct Vector {
   KOKKOS_FUNCTION friend Vector operator+(Vector a, const Vector& b) { return a += b; }
   KOKKOS_FUNCTION friend Vector operator-(Vector a, const Vector& b) { return a -= b; }
   KOKKOS_FUNCTION friend Vector operator*(T s, Vector a) { return a *= s; }
+  ///@}
 };
 
+/// The scalar product a . b.
 template <int N, class T>
 KOKKOS_INLINE_FUNCTION T dot(const Vector<N, T>& a, const Vector<N, T>& b) {
   T sum = a[0] * b[0];
@@ -49,23 +57,29 @@ KOKKOS_INLINE_FUNCTION T dot(const Vector<N, T>& a, const Vector<N, T>& b) {
 /// A general second-order tensor, such as the velocity gradient L(i, j) = dv_i / dx_j.
 template <int Dim, class T>
 struct Matrix {
-  T data[Dim][Dim];
+  T data[Dim][Dim];  ///< [row][column]
 
+  /// The null tensor.
   KOKKOS_FUNCTION static Matrix zero() {
     Matrix m;
     for (int i = 0; i < Dim; ++i)
       for (int j = 0; j < Dim; ++j) m.data[i][j] = T(0);
     return m;
   }
+  /// The unit tensor.
   KOKKOS_FUNCTION static Matrix identity() {
     Matrix m = zero();
     for (int i = 0; i < Dim; ++i) m.data[i][i] = T(1);
     return m;
   }
+  ///@{
+  /// Component (i, j), each in [0, Dim).
   KOKKOS_FUNCTION T& operator()(int i, int j) { return data[i][j]; }
   KOKKOS_FUNCTION const T& operator()(int i, int j) const { return data[i][j]; }
+  ///@}
 };
 
+/// The sum of the diagonal.
 template <int Dim, class T>
 KOKKOS_INLINE_FUNCTION T trace(const Matrix<Dim, T>& m) {
   T sum = m(0, 0);
@@ -73,6 +87,7 @@ KOKKOS_INLINE_FUNCTION T trace(const Matrix<Dim, T>& m) {
   return sum;
 }
 
+/// The determinant.
 template <int Dim, class T>
 KOKKOS_INLINE_FUNCTION T determinant(const Matrix<Dim, T>& m) {
   static_assert(Dim >= 1 && Dim <= 3, "determinant: dimension 1, 2 or 3");
@@ -145,23 +160,31 @@ KOKKOS_INLINE_FUNCTION constexpr int symmetric_index(int i, int j) {
 /// A symmetric tensor in a Dim-dimensional problem; always with the three normal components.
 template <int Dim, class T>
 struct SymmetricTensor {
-  static constexpr int size = symmetric_components(Dim);
-  T data[size];
+  static constexpr int size = symmetric_components(Dim);  ///< stored components: 3, 4 or 6
+  T data[size];  ///< xx, yy, zz, xy, yz, xz, as far as they are stored
 
+  /// The null tensor.
   KOKKOS_FUNCTION static SymmetricTensor zero() {
     SymmetricTensor s;
     for (int c = 0; c < size; ++c) s.data[c] = T(0);
     return s;
   }
+  /// `value` times the unit tensor of three dimensions, whatever Dim is.
   KOKKOS_FUNCTION static SymmetricTensor isotropic(T value) {
     SymmetricTensor s = zero();
     for (int i = 0; i < 3; ++i) s.data[i] = value;
     return s;
   }
+  ///@{
+  /// Stored component c in [0, size).
   KOKKOS_FUNCTION T& operator[](int c) { return data[c]; }
   KOKKOS_FUNCTION const T& operator[](int c) const { return data[c]; }
+  ///@}
+  /// Component (i, j), each in [0, Dim), or (2, 2), the normal component zz, for any Dim.
   KOKKOS_FUNCTION const T& operator()(int i, int j) const { return data[symmetric_index(i, j)]; }
 
+  ///@{
+  /// Component by component.
   KOKKOS_FUNCTION SymmetricTensor& operator+=(const SymmetricTensor& b) {
     for (int c = 0; c < size; ++c) data[c] += b.data[c];
     return *this;
@@ -181,6 +204,7 @@ struct SymmetricTensor {
     return a -= b;
   }
   KOKKOS_FUNCTION friend SymmetricTensor operator*(T s, SymmetricTensor a) { return a *= s; }
+  ///@}
 };
 
 /// s . v, with the in-plane (Dim x Dim) part of s: the traction on a face of normal v, or, with v = grad N, a
