@@ -8,24 +8,27 @@
 
 namespace vsb {
 
+/// What the bases on one cell share. Support node a is corner a of the cell, as in physics/multilinear.hpp.
 template <class Grid>
 struct CellBasis {
-  static constexpr int dimension = Grid::dimension;
-  static constexpr int support = Grid::corners;
+  static constexpr int dimension = Grid::dimension;  ///< of space: 1, 2 or 3
+  static constexpr int support = Grid::corners;      ///< nodes whose functions are not zero in a cell, 2^Dim
   /// Rings of cells, beyond those around a node, that its support overlaps.
   static constexpr int reach = 0;
   /// The bins of a cell's first corners, as many as this, have all its particles.
   static constexpr int bins_of_cell = 1;
-  using real = typename Grid::real;
-  using Position = Vector<dimension, real>;
+  using real = typename Grid::real;          ///< type of the numbers
+  using Position = Vector<dimension, real>;  ///< in m
 
-  Grid grid;
+  Grid grid;  ///< whose cells these are
 
   /// Whether the nodes beyond a face are mirror images (see physics/walls.hpp); here there are none.
   KOKKOS_FUNCTION bool mirrored(int, int) const { return false; }
 
+  /// Whether x lies in the grid; false at NaN.
   KOKKOS_FUNCTION bool contains(const Position& x) const { return grid.contains(x); }
 
+  /// Number of nodes.
   KOKKOS_FUNCTION int node_count() const { return grid.node_count(); }
 
   /// Number of bins; some of them may never hold a particle.

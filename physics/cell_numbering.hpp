@@ -14,19 +14,23 @@ struct CellPoint {
   Real volume_ratio;    ///< det(dx / dxi), m^Dim
 };
 
+/// Nodes and cells of a logically regular grid by their numbers (i, j, k) along each direction, and by one
+/// number, i first. Cell (i, j, k) has node (i, j, k) as its lowest.
 template <int Dim>
 struct CellNumbering {
   static_assert(Dim >= 1 && Dim <= 3, "CellNumbering: dimension 1, 2 or 3");
-  static constexpr int dimension = Dim;
+  static constexpr int dimension = Dim;     ///< of space: 1, 2 or 3
   static constexpr int corners = 1 << Dim;  ///< nodes of a cell
 
   Vector<Dim, int> cells = Vector<Dim, int>::zero();  ///< cells in each direction
 
+  /// Number of nodes.
   KOKKOS_FUNCTION int node_count() const {
     int n = 1;
     for (int i = 0; i < Dim; ++i) n *= cells[i] + 1;
     return n;
   }
+  /// Number of cells.
   KOKKOS_FUNCTION int cell_count() const {
     int n = 1;
     for (int i = 0; i < Dim; ++i) n *= cells[i];
@@ -39,6 +43,7 @@ struct CellNumbering {
     for (int i = 0; i < axis; ++i) stride *= cells[i] + 1;
     return stride;
   }
+  /// The number of node (i, j, k).
   KOKKOS_FUNCTION int node_index(const Vector<Dim, int>& ijk) const {
     int index = 0;
     for (int i = Dim - 1; i >= 0; --i) index = index * (cells[i] + 1) + ijk[i];
@@ -62,6 +67,7 @@ struct CellNumbering {
     return offset;
   }
 
+  /// The number of cell (i, j, k).
   KOKKOS_FUNCTION int cell_index(const Vector<Dim, int>& ijk) const {
     int index = 0;
     for (int i = Dim - 1; i >= 0; --i) index = index * cells[i] + ijk[i];
@@ -73,6 +79,7 @@ struct CellNumbering {
     for (int i = Dim - 1; i > 0; --i) row = row * cells[i] + ijk[i];
     return row;
   }
+  /// The place (i, j, k) of a cell number.
   KOKKOS_FUNCTION Vector<Dim, int> cell_ijk(int cell) const {
     Vector<Dim, int> ijk;
     for (int i = 0; i < Dim; ++i) {

@@ -75,10 +75,12 @@ KOKKOS_FORCEINLINE_FUNCTION T derivative_at(const CellPolynomial<Dim, T>& c, con
 /// with a = r + c rows.
 template <int Dim, class T>
 struct CornerFunctions {
+  /// Products of one function of each direction but the last.
   static constexpr int rows = 1 << (Dim - 1);
   Vector<rows, T> row;  ///< of all directions but the last; unused in 1D
-  Vector<2, T> last;
+  Vector<2, T> last;    ///< 1 - xi and xi of the last direction
 
+  /// At the point xi of the cell, in [0, 1]^Dim.
   KOKKOS_FORCEINLINE_FUNCTION explicit CornerFunctions(const Vector<Dim, T>& xi) {
     if constexpr (Dim > 1) {
       row[0] = T(1) - xi[0];
@@ -207,14 +209,19 @@ KOKKOS_FORCEINLINE_FUNCTION CellPolynomial<Dim, T> gradient_moments_along(T c,
 /// others.
 template <int Dim, class T>
 struct SecondMoments {
+  ///@{
+  /// m[k] = sum_p w_p q_k(xi_p), and square[j][k] = sum_p w_p xi_pj^2 q_k(xi_p).
   CellPolynomial<Dim, T> m, square[Dim];
+  ///@}
 
+  /// Sets all moments to zero.
   KOKKOS_FORCEINLINE_FUNCTION void set_zero() {
     static_for<(1 << Dim)>([&](auto k) VSB_UNROLLED {
       m[k] = T(0);
       static_for<Dim>([&](auto j) VSB_UNROLLED { square[j][k] = T(0); });
     });
   }
+  /// Adds a particle of weight w at xi in [0, 1]^Dim to all moments.
   KOKKOS_FORCEINLINE_FUNCTION void add(T w, const Vector<Dim, T>& xi) {
     add_moments<Dim>(m, w, xi);
     if constexpr (Dim > 1) static_for<Dim>([&](auto j) VSB_UNROLLED { add_square<j>(w, xi); });
@@ -225,6 +232,7 @@ struct SecondMoments {
     add_moments<Dim>(m, w, xi);
     if constexpr (Dim > 1) add_square<j>(w, xi);
   }
+  /// Adds a particle of weight w at xi to the moments with xi_j squared.
   template <int j>
   KOKKOS_FORCEINLINE_FUNCTION void add_square(T w, const Vector<Dim, T>& xi) {
     const T wjj = w * xi[j] * xi[j];

@@ -20,24 +20,29 @@ enum class DruckerPragerCone { outer, inner, plane_strain };
 
 /// What a Drucker-Prager material is made from; angles in radians.
 struct DruckerPragerConstants {
+  ///@{
+  /// E > 0 in Pa, and -1 < nu < 1/2.
   double youngs_modulus, poisson_ratio;
-  double cohesion;               ///< c, Pa
-  double friction_angle = 0;     ///< phi
-  double dilation_angle = 0;     ///< psi
-  double hardening_modulus = 0;  ///< H, Pa: increase of the cohesion per kappa
-  DruckerPragerCone cone = DruckerPragerCone::outer;
+  ///@}
+  double cohesion;                                    ///< c, Pa
+  double friction_angle = 0;                          ///< phi
+  double dilation_angle = 0;                          ///< psi
+  double hardening_modulus = 0;                       ///< H, Pa: increase of the cohesion per kappa
+  DruckerPragerCone cone = DruckerPragerCone::outer;  ///< how the cone fits the pyramid
 };
 
+/// A Drucker-Prager or von Mises material; the equations are at the top of this file. Its state per particle
+/// is the plastic strain and kappa.
 template <class Real>
 struct DruckerPrager {
-  static constexpr bool plastic = true;
+  static constexpr bool plastic = true;  ///< see material.hpp
 
-  LinearElastic<Real> elastic;
-  Real friction;           ///< eta
-  Real dilation;           ///< eta_bar
-  Real cohesion_factor;    ///< xi
-  Real cohesion;           ///< c, Pa; von Mises: the yield stress
-  Real hardening_modulus;  ///< H, Pa
+  LinearElastic<Real> elastic;  ///< law of the trial stress
+  Real friction;                ///< eta
+  Real dilation;                ///< eta_bar
+  Real cohesion_factor;         ///< xi
+  Real cohesion;                ///< c, Pa; von Mises: the yield stress
+  Real hardening_modulus;       ///< H, Pa
 
   /// Throws std::invalid_argument unless E and nu suit LinearElastic, c >= 0, 0 <= psi <= phi < pi/2, c and
   /// phi are not both zero, and H >= 0.

@@ -35,6 +35,7 @@ struct ExactHenckyColumn {
   /// The largest tension over the modulus: 1 / e.
   static constexpr double limit() { return 0.36787944117144233; }
 
+  /// Axial Cauchy stress, Pa, tension positive.
   KOKKOS_FUNCTION T stress() const { return -traction; }
 
   /// The root w = ln l of w + s exp(w), s = traction / modulus, by Newton's method from 0, which approaches
@@ -51,6 +52,7 @@ struct ExactHenckyColumn {
     }
     return w;
   }
+  /// Displacement of the particle that was at x0, m: u = x0 (l - 1).
   KOKKOS_FUNCTION T displacement(T x0) const { return x0 * math::expm1(logarithmic_stretch()); }
 };
 

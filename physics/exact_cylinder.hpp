@@ -8,6 +8,8 @@
 
 namespace vsb {
 
+/// Radial displacement and stress in a linear elastic cylinder of inner radius a < b whose outer face is
+/// free; Eq. (A3), Eq. (A4), Eq. (A5).
 template <class T>
 struct ExactCylinder {
   T inner_radius;    ///< a, m

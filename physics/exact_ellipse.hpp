@@ -9,6 +9,8 @@
 
 namespace vsb {
 
+/// Stress in an infinite linear elastic plate with an elliptic hole of semi-axes a_0 along x and b_0 along y;
+/// Eq. (A6) to Eq. (A12).
 template <class T>
 struct ExactEllipse {
   T semi_major;     ///< a_0, m

@@ -16,6 +16,7 @@
 
 namespace vsb {
 
+/// Stress and plastic radius of the cylinder; the equations are at the top of this file.
 template <class T>
 struct ExactMohrCoulombCylinder {
   T inner_radius;    ///< a, m

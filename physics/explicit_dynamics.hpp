@@ -7,6 +7,7 @@
 
 namespace vsb {
 
+///@{
 /// Whether a node has mass to move: below the smallest normal number 1 / m overflows.
 template <class Real>
 KOKKOS_FORCEINLINE_FUNCTION bool has_mass(Real m) {
@@ -16,6 +17,7 @@ template <class Real, int W>
 KOKKOS_FORCEINLINE_FUNCTION typename Pack<Real, W>::Mask has_mass(Pack<Real, W> m) {
   return m >= Pack<Real, W>(math::smallest_normal<Real>);
 }
+///@}
 
 /// Cundall's local damping of one force component: f <- f - alpha |f| sign(v). It is proportional to the
 /// unbalanced force, and vanishes in equilibrium. It is not Galilean invariant: never use it on a body that

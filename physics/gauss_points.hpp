@@ -7,9 +7,10 @@
 
 namespace vsb {
 
+/// The rule of `count` points on [0, 1], exact for polynomials up to degree 2 count - 1.
 template <class T>
 struct GaussPoints {
-  int count;
+  int count;    ///< 1 to 4
   T point[4];   ///< in [0, 1]
   T weight[4];  ///< their sum is 1
 

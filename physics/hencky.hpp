@@ -30,6 +30,8 @@ KOKKOS_INLINE_FUNCTION SymmetricTensor<Dim, T> logarithmic_strain(const Matrix<D
   return from_principal_values(principal);
 }
 
+/// A Hencky material; the equations are at the top of this file. Its state per particle is H = F - I, row by
+/// row.
 template <class Real>
 struct Hencky {
   static constexpr bool plastic = false;  ///< see material.hpp

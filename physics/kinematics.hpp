@@ -59,6 +59,7 @@ KOKKOS_INLINE_FUNCTION Matrix<Dim, T> deformation_increment(const Matrix<Dim, T>
 /// V <- V det(I + dt L): exact for a velocity gradient that acts on the configuration at the start of the
 /// step.
 struct DeterminantVolume {
+  /// The volume at the end of a step of length dt, in the unit of `volume`.
   template <int Dim, class T>
   KOKKOS_FUNCTION T operator()(T volume, const Matrix<Dim, T>& L, T dt) const {
     return volume * determinant(deformation_increment(L, dt));
@@ -68,6 +69,7 @@ struct DeterminantVolume {
 /// V <- V exp(dt tr L): exact for a velocity gradient that is constant over the step; consistent with a
 /// stress that is integrated in rate form, whatever the number of steps.
 struct ExponentialVolume {
+  /// The volume at the end of a step of length dt, in the unit of `volume`.
   template <int Dim, class T>
   KOKKOS_FUNCTION T operator()(T volume, const Matrix<Dim, T>& L, T dt) const {
     return volume * math::exp(T(dt * trace(L)));

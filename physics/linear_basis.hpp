@@ -14,6 +14,7 @@
 
 namespace vsb {
 
+/// Linear, bilinear or trilinear functions on a uniform grid; the equation is at the top of this file.
 template <int Dim, class Real>
 struct LinearBasis : CellBasis<UniformGrid<Dim, Real>> {
   using CellBasis<UniformGrid<Dim, Real>>::grid;

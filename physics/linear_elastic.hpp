@@ -11,6 +11,8 @@
 
 namespace vsb {
 
+/// A linear elastic material in rate form; the equations are at the top of this file. It has no state beside
+/// the stress.
 template <class Real>
 struct LinearElastic {
   static constexpr bool plastic = false;  ///< see material.hpp

@@ -10,6 +10,7 @@
 
 namespace vsb {
 
+/// Linear, bilinear or trilinear functions on a mapped grid; the equations are at the top of this file.
 template <int Dim, class Real>
 struct MappedLinearBasis : CellBasis<MappedGrid<Dim, Real>> {
   using CellBasis<MappedGrid<Dim, Real>>::grid;

@@ -21,7 +21,7 @@ namespace vsb {
 template <int Dim, class Real>
 struct MappedGrid : CellNumbering<Dim> {
   using CellNumbering<Dim>::cells;
-  using real = Real;
+  using real = Real;  ///< type of the numbers
 
   const Real* position;           ///< [node][Dim], m
   const int* start_cell;          ///< [raster cell]: the first cell of a walk to a point in it
@@ -35,6 +35,7 @@ struct MappedGrid : CellNumbering<Dim> {
     for (int i = 0; i < Dim; ++i) x[i] = position[node * Dim + i];
     return x;
   }
+  /// Cell (i, j, k), by the positions of its corners.
   KOKKOS_FUNCTION MultilinearCell<Dim, Real> cell(const Vector<Dim, int>& ijk) const {
     const int lowest = this->node_index(ijk);
     MultilinearCell<Dim, Real> c;
@@ -46,13 +47,14 @@ struct MappedGrid : CellNumbering<Dim> {
     const auto at = cell(ijk).at(xi);
     return {at.x, determinant(at.J)};
   }
+  /// The volume of cell (i, j, k), m^Dim.
   KOKKOS_FUNCTION Real cell_volume(const Vector<Dim, int>& ijk) const { return cell(ijk).volume(); }
 
   /// A cell and the local coordinates in it.
   struct Place {
-    Vector<Dim, int> cell;
-    Vector<Dim, Real> xi;
-    bool found;
+    Vector<Dim, int> cell;  ///< (i, j, k)
+    Vector<Dim, Real> xi;   ///< in [0, 1]^Dim
+    bool found;             ///< false: `cell` and `xi` mean nothing
   };
 
   /// The cell and local coordinates of x; not found outside the grid and at NaN. A point on a face belongs to
@@ -64,6 +66,7 @@ struct MappedGrid : CellNumbering<Dim> {
     return place.found ? place : search(x);
   }
 
+  /// Whether x lies in the grid; false at NaN.
   KOKKOS_FUNCTION bool contains(const Vector<Dim, Real>& x) const { return locate(x).found; }
 
   /// The cell of a point of the grid.

@@ -22,19 +22,23 @@
 
 namespace vsb {
 
+/// The material of a body: one of four laws, whose members the top of this file lists.
 template <class Real>
 using Material = std::variant<LinearElastic<Real>, Hencky<Real>, MohrCoulomb<Real>, DruckerPrager<Real>>;
 
+/// The linear elastic law of a material at small strain around a state of zeros.
 template <class Real>
 LinearElastic<Real> small_strain_law(const Material<Real>& material) {
   return std::visit([](const auto& m) { return m.small_strain_law(); }, material);
 }
 
+/// Whether a material has a yield surface.
 template <class Real>
 bool is_plastic(const Material<Real>& material) {
   return std::visit([](const auto& m) { return m.plastic; }, material);
 }
 
+/// How the volume of a particle follows from the velocity gradient: see physics/kinematics.hpp.
 using VolumeUpdate = std::variant<DeterminantVolume, ExponentialVolume>;
 
 }  // namespace vsb

@@ -47,19 +47,21 @@ KOKKOS_FORCEINLINE_FUNCTION Matrix<Dim, T> with_mean_divergence(Matrix<Dim, T> L
 /// The functions M_c at one point.
 template <int Support, class Real>
 struct MeanShape {
-  int function[Support];
-  Real M[Support];
+  int function[Support];  ///< numbers c
+  Real M[Support];        ///< values M_c >= 0 at the point, whose sum is 1
 };
 
 /// One function per cell, numbered as the bins are.
 template <class Grid>
 struct CellMeans {
-  static constexpr int support = 1;
-  using real = typename Grid::real;
+  static constexpr int support = 1;  ///< functions at a point
+  using real = typename Grid::real;  ///< type of the numbers
 
-  Grid grid;
+  Grid grid;  ///< whose cells these are
 
+  /// Number of functions. A few of them belong to no cell.
   KOKKOS_FUNCTION int node_count() const { return grid.node_count(); }
+  /// The bin of a cell's particles: the number of its function.
   KOKKOS_FUNCTION int bin_of_node(int function, int) const { return function; }
   /// At x, in a bin.
   KOKKOS_FUNCTION MeanShape<1, real> at(const Vector<Grid::dimension, real>&, int bin) const {
@@ -80,15 +82,16 @@ struct CellMeans {
 /// particles. It is merged into the largest of its neighbours.
 template <int Dim, class Real>
 struct CentreMeans {
-  static constexpr int support = 1 << Dim;
+  static constexpr int support = 1 << Dim;  ///< functions at a point, 2^Dim
   /// Share of a cell's volume below which a function is merged into a neighbour.
   static constexpr Real least_fill = Real(0.1);
   /// Share of the largest neighbour's volume from which on a neighbour counts as equally large.
   static constexpr Real about_as_large = Real(0.95);
 
   UniformGrid<Dim, Real> grid;  ///< with its ghost layer
-  Walls<Dim> walls;
+  Walls<Dim> walls;             ///< at the faces between the ghost layer and the other cells
 
+  /// Number of functions. A few of them belong to no cell.
   KOKKOS_FUNCTION int node_count() const { return grid.node_count(); }
   /// The bin in which the function at corner a of the dual cell is `function`, or -1 where there is none.
   KOKKOS_FUNCTION int bin_of_node(int function, int a) const {
@@ -132,6 +135,7 @@ struct CentreMeans {
   }
   /// m^Dim
   KOKKOS_FUNCTION Real least_volume() const { return least_fill * grid.cell_volume(); }
+  /// Whether a function of this volume in m^Dim is to be merged. Without particles it is not.
   KOKKOS_FUNCTION bool is_small(Real volume) const { return volume > Real(0) && volume < least_volume(); }
   /// The function that the function of a cell is merged into: the nearest of the equally large largest
   /// neighbours. The function itself where it is not small, or where all its neighbours are. volume(cell):
@@ -178,6 +182,8 @@ struct CentreMeans {
   }
 };
 
+///@{
+/// The functions M_c that belong to a basis.
 template <class Grid>
 KOKKOS_FUNCTION CellMeans<Grid> means_of(const CellBasis<Grid>& basis) {
   return {basis.grid};
@@ -186,5 +192,6 @@ template <int Dim, class Real>
 KOKKOS_FUNCTION CentreMeans<Dim, Real> means_of(const NearestNodeBasis<Dim, Real>& basis) {
   return {basis.grid, basis.walls};
 }
+///@}
 
 }  // namespace vsb

@@ -18,7 +18,10 @@ namespace vsb {
 
 /// What a Mohr-Coulomb material is made from; angles in radians.
 struct MohrCoulombConstants {
+  ///@{
+  /// E > 0 in Pa, and -1 < nu < 1/2.
   double youngs_modulus, poisson_ratio;
+  ///@}
   double cohesion;                                                    ///< c, Pa
   double friction_angle = 0;                                          ///< phi
   double dilation_angle = 0;                                          ///< psi
@@ -28,13 +31,18 @@ struct MohrCoulombConstants {
   double apex() const { return cohesion / std::tan(friction_angle); }
 };
 
+/// A Mohr-Coulomb or Tresca material; the equations are at the top of this file. Its state per particle is
+/// the plastic strain.
 template <class Real>
 struct MohrCoulomb {
-  static constexpr bool plastic = true;
+  static constexpr bool plastic = true;  ///< see material.hpp
 
-  LinearElastic<Real> elastic;
-  MohrCoulombSurface<Real> surface;
-  Real cone_slope, cone_strength;  ///< of the largest cone within f; see elastic_cone.hpp
+  LinearElastic<Real> elastic;       ///< law of the trial stress
+  MohrCoulombSurface<Real> surface;  ///< in principal stresses
+  ///@{
+  /// Of the largest cone within f; see elastic_cone.hpp. The strength is in Pa.
+  Real cone_slope, cone_strength;
+  ///@}
 
   /// Throws std::invalid_argument unless E and nu suit LinearElastic, c >= 0, 0 <= psi <= phi < pi/2, c and
   /// phi are not both zero, and the tensile strength is not negative.

@@ -16,10 +16,14 @@
 
 namespace vsb {
 
+/// The yield surface f <= 0, s1 <= tensile strength of physics/mohr_coulomb.hpp.
 template <class Real>
 struct MohrCoulombSurface {
   Real coupling;  ///< nu / (1 - 2 nu): D / (2 mu) v = v + coupling (v1 + v2 + v3) (1, 1, 1)
+  ///@{
+  /// sin(phi) and sin(psi), 0 <= psi <= phi < pi/2.
   Real sin_friction, sin_dilation;
+  ///@}
   Real strength;          ///< 2 c cos(phi), Pa
   Real apex;              ///< c cot(phi), Pa; infinite without friction
   Real tensile_strength;  ///< Pa, below the apex; infinite: no cut-off
@@ -29,6 +33,8 @@ struct MohrCoulombSurface {
     return s[0] - s[2] + sin_friction * (s[0] + s[2]) > strength || s[0] > tensile_strength;
   }
 
+  /// The point of the surface to which a trial stress beyond it returns. Both are sorted, s1 >= s2 >= s3, in
+  /// Pa.
   KOKKOS_FUNCTION Vector<3, Real> returned(const Vector<3, Real>& trial) const {
     // The main plane f(s1, s3), then the edges s2 = s3 and s1 = s2 of the pyramid; then the faces, edges and
     // vertices of the cut-off, alone and with the pyramid. At the vertex s1 = s2 = tensile strength four

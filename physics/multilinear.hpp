@@ -43,16 +43,17 @@ KOKKOS_FORCEINLINE_FUNCTION T off_the_faces(T xi) {
 /// One cell, by the positions of its corners in m.
 template <int Dim, class T>
 struct MultilinearCell {
-  static constexpr int corners = 1 << Dim;
-  Vector<Dim, T> corner[corners];
+  static constexpr int corners = 1 << Dim;  ///< 2^Dim
+  Vector<Dim, T> corner[corners];           ///< X_a
 
   /// The functions at a point of the cell, with respect to xi, and the map there.
   struct Point {
-    T N[corners];
-    Vector<Dim, T> dN[corners];
-    Vector<Dim, T> x;
-    Matrix<Dim, T> J;  ///< J(i, k) = dx_i / dxi_k
+    T N[corners];                ///< N_a
+    Vector<Dim, T> dN[corners];  ///< dN_a / dxi
+    Vector<Dim, T> x;            ///< m
+    Matrix<Dim, T> J;            ///< J(i, k) = dx_i / dxi_k
   };
+  /// The functions and the map at xi in [0, 1]^Dim.
   KOKKOS_FUNCTION Point at(const Vector<Dim, T>& xi) const {
     Vector<Dim, T> one;
     for (int i = 0; i < Dim; ++i) one[i] = T(1);
@@ -83,8 +84,8 @@ struct MultilinearCell {
   /// Local coordinates of x. Without convergence the point is outside the cell, in the direction of the
   /// coordinates.
   struct Inverse {
-    Vector<Dim, T> xi;
-    bool converged;
+    Vector<Dim, T> xi;  ///< beyond [0, 1]^Dim outside the cell
+    bool converged;     ///< whether `xi` is the solution of x(xi) = x
   };
   /// Newton's method from the centre. Iterates are limited to the cell, where J is regular. An iterate that
   /// no longer moves shows that x lies beyond a face.

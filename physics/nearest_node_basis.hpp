@@ -28,7 +28,10 @@ KOKKOS_INLINE_FUNCTION UniformGrid<Dim, Real> with_ghost_layer(UniformGrid<Dim, 
 /// cell.
 template <class T>
 struct NodeTriple {
+  ///@{
+  /// N and dN / dxi.
   T N[3], dN[3];
+  ///@}
 };
 
 /// The products of one function of every direction. Digit i of a, to the base 3: the node is below, at or
@@ -45,18 +48,22 @@ KOKKOS_FORCEINLINE_FUNCTION void multiply_triples(const NodeTriple<T> (&f)[Dim],
   }
 }
 
+/// What the bases around the nearest node share. Support node a is below, at or above the nearest node in
+/// direction i, by digit i of a to the base 3.
 template <int Dim, class Real>
 struct NearestNodeBasis {
-  static constexpr int dimension = Dim;
+  static constexpr int dimension = Dim;  ///< of space: 1, 2 or 3
+  /// Nodes whose functions may be non-zero at a point, 3^Dim.
   static constexpr int support = Dim == 1 ? 3 : Dim == 2 ? 9 : 27;
-  static constexpr int reach = 1;
-  static constexpr int bins_of_cell = 1 << Dim;
-  using real = Real;
-  using Position = Vector<Dim, Real>;
+  static constexpr int reach = 1;                ///< see CellBasis
+  static constexpr int bins_of_cell = 1 << Dim;  ///< see CellBasis
+  using real = Real;                             ///< type of the numbers
+  using Position = Vector<Dim, Real>;            ///< in m
 
   UniformGrid<Dim, Real> grid;  ///< with its ghost layer
   Walls<Dim> walls;             ///< at the faces between the ghost layer and the other cells
 
+  /// Whether the nodes beyond a face are mirror images (see physics/walls.hpp).
   KOKKOS_FUNCTION bool mirrored(int axis, int side) const { return walls.mirrored(axis, side); }
 
   /// Whether x lies in the grid without its ghost layer; round-off at a face counts as inside, NaN as
@@ -70,10 +77,13 @@ struct NearestNodeBasis {
     return true;
   }
 
+  ///@{
+  /// As in CellBasis; bins are dual cells.
   KOKKOS_FUNCTION int node_count() const { return grid.node_count(); }
   KOKKOS_FUNCTION int bin_count() const { return grid.node_count(); }
   KOKKOS_FUNCTION int bin(const Position& x) const { return grid.node_index(nearest_node(grid.in_cells(x))); }
   KOKKOS_FUNCTION int node_of_bin(int bin_index, int a) const { return bin_index + offset(a); }
+  ///@}
   /// The bin whose support node a is `node`, or -1 where there is none.
   KOKKOS_FUNCTION int bin_of_node(int node, int a) const {
     const auto ijk = grid.node_ijk(node);
@@ -84,6 +94,7 @@ struct NearestNodeBasis {
     return node - offset(a);
   }
 
+  /// The node (i, j, k) nearest to q >= 0, a position in cells from node 0.
   KOKKOS_FORCEINLINE_FUNCTION static Vector<Dim, int> nearest_node(const Vector<Dim, Real>& q) {
     Vector<Dim, int> ijk;
     for (int i = 0; i < Dim; ++i) ijk[i] = static_cast<int>(q[i] + Real(0.5));

@@ -10,7 +10,10 @@ namespace vsb {
 /// Components along the radial and circumferential directions.
 template <class T>
 struct PolarStress {
+  ///@{
+  /// sigma_rr, sigma_tt and sigma_rt in Pa, tension positive.
   T rr, tt, rt;
+  ///@}
 };
 
 /// The polar components of a stress at (x, y), which must not be the origin. Uses only the in-plane part.

@@ -11,12 +11,15 @@
 
 namespace vsb {
 
+/// The functions of one direction at the distance xi in cells from the nearest node, -1/2 <= xi <= 1/2.
 template <class T>
 KOKKOS_FORCEINLINE_FUNCTION NodeTriple<T> quadratic_bspline(T xi) {
   const T below = T(0.5) - xi, above = T(0.5) + xi;
   return {{T(0.5) * below * below, T(0.75) - xi * xi, T(0.5) * above * above}, {-below, -2 * xi, above}};
 }
 
+/// Products of quadratic B-splines on a uniform grid with a ghost layer; the equation is at the top of this
+/// file.
 template <int Dim, class Real>
 struct QuadraticBSplineBasis : NearestNodeBasis<Dim, Real> {
   using NearestNodeBasis<Dim, Real>::support;

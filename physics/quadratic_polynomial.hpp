@@ -64,7 +64,11 @@ KOKKOS_FORCEINLINE_FUNCTION void nodes_from_quadratic(QuadraticPolynomial<Dim, T
 /// xi, xi + 1/2 and xi^2 / 2 in every direction.
 template <int Dim, class T>
 struct Powers {
+  ///@{
+  /// xi, xi + 1/2 and xi^2 / 2, by direction.
   Vector<Dim, T> first, shifted, second;
+  ///@}
+  /// At the point xi of the dual cell, in [0, 1]^Dim.
   KOKKOS_FORCEINLINE_FUNCTION explicit Powers(const Vector<Dim, T>& xi) : first(xi) {
     static_for<Dim>([&](auto i) VSB_UNROLLED {
       shifted[i] = xi[i] + T(0.5);
@@ -134,9 +138,10 @@ KOKKOS_FORCEINLINE_FUNCTION void add_slope_moments(QuadraticPolynomial<Dim, T>& 
 /// A product of one function of every direction, as functions of all but the last, and of the last.
 template <int Dim, class T>
 struct TensorProduct {
+  /// Products of one function of each direction but the last.
   static constexpr int rows = stencil_size(Dim - 1);
   Vector<rows, T> row;  ///< 1 in 1D
-  Vector<3, T> last;
+  Vector<3, T> last;    ///< the functions of the last direction
 
   /// of(i): the three functions of direction i.
   template <class Of>

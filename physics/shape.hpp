@@ -10,10 +10,10 @@ namespace vsb {
 /// The Support nodes whose basis functions may be non-zero at a point.
 template <int Dim, int Support, class T>
 struct Shape {
-  static constexpr int support = Support;
-  int node[Support];           ///< node numbers
-  T N[Support];                ///< basis functions N_I(x)
-  Vector<Dim, T> dN[Support];  ///< their gradients, 1/m
+  static constexpr int support = Support;  ///< number of nodes
+  int node[Support];                       ///< node numbers
+  T N[Support];                            ///< basis functions N_I(x)
+  Vector<Dim, T> dN[Support];              ///< their gradients, 1/m
 
   /// sum_I N_I f(I), Eq. (8); `field` maps a node number to a Vector.
   VSB_ANY_CALLABLE

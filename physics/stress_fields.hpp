@@ -14,6 +14,7 @@ template <int Dim, class T>
 struct UniformStress {
   SymmetricTensor<Dim, T> stress;  ///< Pa, tension positive
 
+  /// The field and its divergence, at any x.
   KOKKOS_FUNCTION VirtualStressValue<Dim, T> at(const Vector<Dim, T>&) const {
     return {stress, Vector<Dim, T>::zero()};
   }
@@ -25,6 +26,7 @@ struct AffineStress {
   SymmetricTensor<Dim, T> value;          ///< at the origin, Pa, tension positive
   SymmetricTensor<Dim, T> gradient[Dim];  ///< d sbar / d x_k, Pa/m
 
+  /// The field and its divergence at x in m.
   KOKKOS_FUNCTION VirtualStressValue<Dim, T> at(const Vector<Dim, T>& x) const {
     VirtualStressValue<Dim, T> bar{value, Vector<Dim, T>::zero()};
     for (int k = 0; k < Dim; ++k) {
@@ -48,6 +50,7 @@ struct HydrostaticStress {
   T width;            ///< w, m
   Vector<Dim, T> up;  ///< unit vector
 
+  /// The field and its divergence at x in m.
   KOKKOS_FUNCTION VirtualStressValue<Dim, T> at(const Vector<Dim, T>& x) const {
     const T d = level - dot(x, up), above = d + width / 2;
     const bool dry = above <= T(0), wet = d >= width / 2;
@@ -64,11 +67,18 @@ struct HydrostaticStress {
 /// normal to an axis.
 template <int Dim, class T>
 struct RadialBlend {
-  Vector<Dim, T> center;                 ///< m
-  Vector<Dim, T> across;                 ///< 1, or 0 for the direction of the axis
-  T inner_radius, outer_radius;          ///< a < b, m
-  SymmetricTensor<Dim, T> inner, outer;  ///< S_inner, S_outer, Pa, tension positive
+  Vector<Dim, T> center;  ///< m
+  Vector<Dim, T> across;  ///< 1, or 0 for the direction of the axis
+  ///@{
+  /// a < b, m.
+  T inner_radius, outer_radius;
+  ///@}
+  ///@{
+  /// S_inner and S_outer, Pa, tension positive.
+  SymmetricTensor<Dim, T> inner, outer;
+  ///@}
 
+  /// The field and its divergence at x in m.
   KOKKOS_FUNCTION VirtualStressValue<Dim, T> at(const Vector<Dim, T>& x) const {
     Vector<Dim, T> from_axis;
     for (int i = 0; i < Dim; ++i) from_axis[i] = across[i] * (x[i] - center[i]);
@@ -84,10 +94,14 @@ struct RadialBlend {
 /// From one stress at a plane to another at a parallel one, linear in between and constant beyond.
 template <int Dim, class T>
 struct PlanarBlend {
-  Vector<Dim, T> start;                      ///< a point of the first plane, m
-  Vector<Dim, T> across;                     ///< from plane to plane along their normal, m
-  SymmetricTensor<Dim, T> at_start, at_end;  ///< Pa, tension positive
+  Vector<Dim, T> start;   ///< a point of the first plane, m
+  Vector<Dim, T> across;  ///< from plane to plane along their normal, m
+  ///@{
+  /// On the first plane and before it, and on the second and beyond; Pa, tension positive.
+  SymmetricTensor<Dim, T> at_start, at_end;
+  ///@}
 
+  /// The field and its divergence at x in m.
   KOKKOS_FUNCTION VirtualStressValue<Dim, T> at(const Vector<Dim, T>& x) const {
     const T length2 = dot(across, across);
     const T s = dot(x - start, across) / length2;

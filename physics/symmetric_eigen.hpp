@@ -14,8 +14,8 @@ namespace vsb {
 /// axes left out. They are not sorted.
 template <int Dim, class T>
 struct PrincipalValues {
-  Vector<3, T> value;
-  Matrix<Dim, T> direction;
+  Vector<3, T> value;        ///< in the unit of the tensor
+  Matrix<Dim, T> direction;  ///< column k: the unit vector n_k
 };
 
 namespace detail {

@@ -18,6 +18,8 @@ class StressField {
 
  public:
   KOKKOS_FUNCTION StressField() : StressField(UniformStress<Dim, Real>{SymmetricTensor<Dim, Real>::zero()}) {}
+  ///@{
+  /// Holds one field of the given kind.
   KOKKOS_FUNCTION StressField(const UniformStress<Dim, Real>& f) : kind_(Kind::uniform), uniform_(f) {}
   KOKKOS_FUNCTION StressField(const AffineStress<Dim, Real>& f) : kind_(Kind::affine), affine_(f) {}
   KOKKOS_FUNCTION StressField(const HydrostaticStress<Dim, Real>& f)
@@ -25,7 +27,9 @@ class StressField {
   KOKKOS_FUNCTION StressField(const RadialBlend<Dim, Real>& f) : kind_(Kind::radial), radial_(f) {}
   KOKKOS_FUNCTION StressField(const PlanarBlend<Dim, Real>& f) : kind_(Kind::planar), planar_(f) {}
   KOKKOS_FUNCTION StressField(const Ellipse& f) : kind_(Kind::ellipse), ellipse_(f) {}
+  ///@}
 
+  ///@{
   /// Whether the field is affine in x, and then the field.
   bool is_affine() const { return kind_ == Kind::uniform || kind_ == Kind::affine; }
   AffineStress<Dim, Real> as_affine() const {
@@ -34,7 +38,9 @@ class StressField {
     for (int j = 0; j < Dim; ++j) constant.gradient[j] = SymmetricTensor<Dim, Real>::zero();
     return constant;
   }
+  ///@}
 
+  /// The field and its divergence at x in m.
   KOKKOS_FUNCTION VirtualStressValue<Dim, Real> at(const Vector<Dim, Real>& x) const {
     switch (kind_) {
       case Kind::affine:
@@ -70,12 +76,17 @@ class StressField {
 /// A body force that varies as the velocity of a rigid motion: c + S (x - x_c), S skew.
 template <int Dim, class Real>
 struct RigidBodyForce {
-  Vector<Dim, Real> about, constant;  ///< x_c in m, c in N/m^3
-  Matrix<Dim, Real> spin;             ///< S, N/m^4
+  ///@{
+  /// x_c in m, and c in N/m^3.
+  Vector<Dim, Real> about, constant;
+  ///@}
+  Matrix<Dim, Real> spin;  ///< S, N/m^4
 
+  /// No force anywhere.
   KOKKOS_FUNCTION static RigidBodyForce zero() {
     return {Vector<Dim, Real>::zero(), Vector<Dim, Real>::zero(), Matrix<Dim, Real>::zero()};
   }
+  /// The force at x in m, N/m^3.
   KOKKOS_FUNCTION Vector<Dim, Real> at(const Vector<Dim, Real>& x) const {
     return constant + spin * (x - about);
   }
@@ -84,15 +95,17 @@ struct RigidBodyForce {
 /// Stress fields of any kind; tractions add up where their surfaces overlap.
 template <int Dim, class Real>
 struct TractionFields : ActsOnParticles {
-  static constexpr int capacity = UniformVirtualStress<Dim, Real>::capacity;
-  StressField<Dim, Real> field[capacity];
-  Real factor[capacity];  ///< on the field of traction k, at this time
-  int count = 0;
+  static constexpr int capacity = UniformVirtualStress<Dim, Real>::capacity;  ///< the largest `count`
+  StressField<Dim, Real> field[capacity];                                     ///< of traction k
+  Real factor[capacity];      ///< on the field of traction k, at this time
+  int count = 0;              ///< of tractions, 0 to capacity
   TractionMask balanced = 0;  ///< the tractions to which `balance` belongs, all at the same nodes
   RigidBodyForce<Dim, Real> balance =
       RigidBodyForce<Dim, Real>::zero();  ///< see kernels/boundary/self_balance.hpp
 
+  /// The tractions 0, ..., count - 1. Throws std::invalid_argument for a count beyond the capacity.
   TractionMask known() const { return first_tractions(count, capacity); }
+  /// The same field less the tractions in the mask.
   TractionFields without(TractionMask tractions) const {
     auto rest = *this;
     for (int k = 0; k < count; ++k)
@@ -101,6 +114,7 @@ struct TractionFields : ActsOnParticles {
     return rest;
   }
 
+  /// The sum of the fields of the tractions in the mask, and of `balance` where it belongs, at x in m.
   KOKKOS_FUNCTION VirtualStressValue<Dim, Real> at(const Vector<Dim, Real>& x, TractionMask mask) const {
     auto sum = VirtualStressValue<Dim, Real>::zero();
     for (int k = 0; k < count; ++k) {
@@ -117,13 +131,15 @@ struct TractionFields : ActsOnParticles {
 /// Affine stress fields, one per traction; tractions add up where their surfaces overlap.
 template <int Dim, class Real>
 struct AffineVirtualStress : ActsOnParticles {
-  static constexpr bool affine = true;
-  static constexpr int capacity = UniformVirtualStress<Dim, Real>::capacity;
-  AffineStress<Dim, Real> field[capacity];
+  static constexpr bool affine = true;  ///< see the top of virtual_stress.hpp
+  static constexpr int capacity = UniformVirtualStress<Dim, Real>::capacity;  ///< the largest `count`
+  AffineStress<Dim, Real> field[capacity];                                    ///< of traction k
   Real factor[capacity];  ///< on the field of traction k, at this time
-  int count = 0;
+  int count = 0;          ///< of tractions, 0 to capacity
 
+  /// The tractions 0, ..., count - 1. Throws std::invalid_argument for a count beyond the capacity.
   TractionMask known() const { return first_tractions(count, capacity); }
+  /// The same field less the tractions in the mask.
   AffineVirtualStress without(TractionMask tractions) const {
     auto rest = *this;
     for (int k = 0; k < count; ++k)
@@ -162,6 +178,7 @@ struct AffineVirtualStress : ActsOnParticles {
       slope += factor[k] * field[k].gradient[j][a];
     }
   }
+  /// The sum of the fields of the tractions in the mask, by their factors.
   KOKKOS_FUNCTION AffineStress<Dim, Real> sum(TractionMask mask) const {
     AffineStress<Dim, Real> total;
     total.value = SymmetricTensor<Dim, Real>::zero();
@@ -173,6 +190,7 @@ struct AffineVirtualStress : ActsOnParticles {
     }
     return total;
   }
+  /// The same sum and its divergence at x in m.
   KOKKOS_FUNCTION VirtualStressValue<Dim, Real> at(const Vector<Dim, Real>& x, TractionMask mask) const {
     return sum(mask).at(x);
   }
@@ -181,10 +199,12 @@ struct AffineVirtualStress : ActsOnParticles {
 /// See virtual_stress_of.
 template <class Functor>
 struct FunctorVirtualStress : ActsOnParticles {
-  Functor functor;
-  TractionMask acting = ~TractionMask(0);
+  Functor functor;                         ///< from x to VirtualStressValue
+  TractionMask acting = ~TractionMask(0);  ///< the tractions that have this field
 
+  /// The same field less the tractions in the mask.
   FunctorVirtualStress without(TractionMask tractions) const { return {{}, functor, acting & ~tractions}; }
+  /// The field at x in m, once for all tractions of the mask; zero if none of them has it.
   template <int Dim, class T>
   KOKKOS_FUNCTION VirtualStressValue<Dim, T> at(const Vector<Dim, T>& x, TractionMask mask) const {
     return (mask & acting) != 0 ? functor(x) : VirtualStressValue<Dim, T>::zero();

@@ -11,6 +11,8 @@
 
 namespace vsb {
 
+/// The functions of one direction at the distance xi in cells from the nearest node, -1/2 <= xi <= 1/2, for a
+/// particle of half-width 0 < l <= 1/2 in cells.
 template <class T>
 KOKKOS_FORCEINLINE_FUNCTION NodeTriple<T> uniform_gimp(T xi, T half_width) {
   const T l = half_width, above = math::max(T(0), xi + l), below = math::max(T(0), l - xi);
@@ -19,6 +21,7 @@ KOKKOS_FORCEINLINE_FUNCTION NodeTriple<T> uniform_gimp(T xi, T half_width) {
   return {{N_below, T(1) - N_below - N_above, N_above}, {dN_below, -dN_below - dN_above, dN_above}};
 }
 
+/// Products of uGIMP functions on a uniform grid with a ghost layer; the equation is at the top of this file.
 template <int Dim, class Real>
 struct UniformGimpBasis : NearestNodeBasis<Dim, Real> {
   using NearestNodeBasis<Dim, Real>::support;

@@ -10,28 +10,33 @@
 
 namespace vsb {
 
+/// Axis-parallel cells of equal size from the lower corner on.
 template <int Dim, class Real>
 struct UniformGrid : CellNumbering<Dim> {
   using CellNumbering<Dim>::cells;
-  using real = Real;
+  using real = Real;  ///< type of the numbers
 
   Vector<Dim, Real> lower = Vector<Dim, Real>::zero();            ///< position of node 0, m
   Vector<Dim, Real> spacing = Vector<Dim, Real>::zero();          ///< cell size, m
   Vector<Dim, Real> inverse_spacing = Vector<Dim, Real>::zero();  ///< 1/m
 
   UniformGrid() = default;
+  /// Of the lower corner in m, the cell size > 0 in m and the cells > 0 in each direction.
   KOKKOS_FUNCTION UniformGrid(const Vector<Dim, Real>& lower_corner, const Vector<Dim, Real>& cell_size,
                               const Vector<Dim, int>& cell_count)
       : CellNumbering<Dim>{cell_count}, lower(lower_corner), spacing(cell_size) {
     for (int i = 0; i < Dim; ++i) inverse_spacing[i] = Real(1) / spacing[i];
   }
 
+  ///@{
+  /// The volume of a cell, m^Dim; the same for all.
   KOKKOS_FUNCTION Real cell_volume() const {
     Real v = spacing[0];
     for (int i = 1; i < Dim; ++i) v *= spacing[i];
     return v;
   }
   KOKKOS_FUNCTION Real cell_volume(const Vector<Dim, int>&) const { return cell_volume(); }
+  ///@}
 
   /// The position of a node, m.
   KOKKOS_FUNCTION Vector<Dim, Real> node_position(int node) const {

@@ -28,6 +28,7 @@ struct VirtualStressValue {
   SymmetricTensor<Dim, T> stress;  ///< sbar, Pa, tension positive
   Vector<Dim, T> divergence;       ///< fbar, N/m^3
 
+  /// No stress and no divergence.
   KOKKOS_FUNCTION static VirtualStressValue zero() {
     return {SymmetricTensor<Dim, T>::zero(), Vector<Dim, T>::zero()};
   }
@@ -43,17 +44,26 @@ inline TractionMask first_tractions(int count, int capacity) {
 
 /// Base of most fields: they act on particles, and on all of them.
 struct ActsOnParticles {
+  ///@{
+  /// What kernels ask at compile time; see the top of this file.
   static constexpr bool loaded = true, uniform = false, affine = false, cell_quadrature = false;
+  ///@}
+  /// All tractions, at any position.
   template <class Position>
   KOKKOS_FUNCTION TractionMask acting_at(const Position&) const {
     return ~TractionMask(0);
   }
+  /// All tractions.
   TractionMask known() const { return ~TractionMask(0); }
 };
 
 /// No traction anywhere; kernels skip the virtual stress at compile time.
 struct NoVirtualStress {
+  ///@{
+  /// What kernels ask at compile time; see the top of this file.
   static constexpr bool loaded = false, cell_quadrature = false;
+  ///@}
+  /// Zero.
   template <int Dim, class T>
   KOKKOS_FUNCTION VirtualStressValue<Dim, T> at(const Vector<Dim, T>&, TractionMask) const {
     return VirtualStressValue<Dim, T>::zero();
@@ -69,18 +79,21 @@ KOKKOS_INLINE_FUNCTION SymmetricTensor<Dim, T> pressure_stress(T p) {
 /// One uniform tensor per traction; tractions add up where their surfaces overlap.
 template <int Dim, class Real>
 struct UniformVirtualStress : ActsOnParticles {
-  static constexpr bool uniform = true;
-  static constexpr int capacity = 8;
+  static constexpr bool uniform = true;         ///< see the top of this file
+  static constexpr int capacity = 8;            ///< the largest `count`
   SymmetricTensor<Dim, Real> stress[capacity];  ///< sbar of traction k at this time, Pa, tension positive
-  int count = 0;
+  int count = 0;                                ///< of tractions, 0 to capacity
 
+  /// The tractions 0, ..., count - 1. Throws std::invalid_argument for a count beyond the capacity.
   TractionMask known() const { return first_tractions(count, capacity); }
+  /// The same field less the tractions in the mask.
   UniformVirtualStress without(TractionMask tractions) const {
     auto rest = *this;
     for (int k = 0; k < count; ++k)
       if (tractions >> k & 1u) rest.stress[k] = SymmetricTensor<Dim, Real>::zero();
     return rest;
   }
+  /// The sum of the tensors of the tractions in the mask, at any position; its divergence is zero.
   KOKKOS_FUNCTION VirtualStressValue<Dim, Real> at(const Vector<Dim, Real>&, TractionMask mask) const {
     auto value = VirtualStressValue<Dim, Real>::zero();
     for (int k = 0; k < count; ++k)
@@ -92,9 +105,14 @@ struct UniformVirtualStress : ActsOnParticles {
 /// Tractions of `field` that act on surface points only; particles skip the virtual stress at compile time.
 template <class Field>
 struct OnSurfacePoints {
+  ///@{
+  /// What kernels ask at compile time; see the top of this file.
   static constexpr bool loaded = false, cell_quadrature = false;
-  Field field;
+  ///@}
+  Field field;  ///< the virtual stress of the tractions
+  /// The tractions that `field` has a stress for.
   TractionMask known() const { return field.known(); }
+  /// The sum of the fields of the tractions in the mask at x in m.
   template <int Dim, class T>
   KOKKOS_FUNCTION VirtualStressValue<Dim, T> at(const Vector<Dim, T>& x, TractionMask mask) const {
     return field.at(x, mask);
