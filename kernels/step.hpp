@@ -15,13 +15,13 @@ namespace vsb {
 /// What a step works on.
 template <int Dim, class Real, class Device>
 struct State {
-  Particles<Dim, Real, Device> particles;
-  Nodes<Dim, Real, Device> nodes;
-  Occupancy<Device> occupancy;
-  SurfacePoints<Dim, Real, Device> surface;  ///< none, unless a traction is imposed on points
-  ForceWorkspace<Real, Device> sums_workspace;
-  ScatterWorkspace<Real, Device> remap_workspace;
-  MeanDivergence<Real, Device> mean_divergence;  ///< empty unless steps average
+  Particles<Dim, Real, Device> particles;       ///< Views of the caller's particles
+  Nodes<Dim, Real, Device> nodes;               ///< of the whole grid
+  Occupancy<Device> occupancy;                  ///< bins, declared tractions, and the nodes at which they act
+  SurfacePoints<Dim, Real, Device> surface;     ///< none, unless a traction is imposed on points
+  ForceWorkspace<Real, Device> sums_workspace;  ///< memory of assemble_forces
+  ScatterWorkspace<Real, Device> remap_workspace;  ///< memory of remap_velocity
+  MeanDivergence<Real, Device> mean_divergence;    ///< empty unless steps average
   bool weighed = false;      ///< whether the particles have been found to have masses and volumes
   bool loads_found = false;  ///< whether the load has been found to act at some node
 };
@@ -42,11 +42,13 @@ State<Dim, Real, Device> make_state(const Particles<Dim, Real, Device>& particle
 /// What stays the same over many steps.
 template <int Dim, class Real>
 struct StepOptions {
-  Real dt = 0;                                            ///< s
-  Real damping = 0;                                       ///< Cundall's alpha
-  Vector<Dim, Real> gravity = Vector<Dim, Real>::zero();  ///< m/s^2
-  VolumeUpdate volume_update = DeterminantVolume{};
-  Scatter scatter = Scatter::gathered;
+  Real dt = 0;                                            ///< length of a step, s
+  Real damping = 0;                                       ///< Cundall's alpha, 0 <= alpha < 1
+  Vector<Dim, Real> gravity = Vector<Dim, Real>::zero();  ///< body force per mass, m/s^2
+  VolumeUpdate volume_update = DeterminantVolume{};       ///< determinant or exponential, see kinematics.hpp
+  Scatter scatter = Scatter::gathered;  ///< how sums over particles are made; gathered: the same bits for any
+                                        ///< number of threads
+  /// Volumetric::averaged: against volumetric locking, see physics/mean_divergence.hpp.
   Volumetric volumetric = Volumetric::full;
 };
 

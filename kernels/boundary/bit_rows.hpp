@@ -13,11 +13,11 @@ namespace vsb {
 /// Bit sets of cells, one row of words per row of cells along x; kept between calls.
 template <class Device>
 struct CellBits {
-  using Word = std::uint64_t;
-  using Rows = Kokkos::View<Word**, Kokkos::LayoutRight, Device>;
-  Rows occupied;     ///< [row][word]: non-void cells
-  Rows exterior;     ///< [row][word]: E1
-  Rows boundary;     ///< [row][word]: E1 and E2
+  using Word = std::uint64_t;                                      ///< 64 cells or nodes side by side along x
+  using Rows = Kokkos::View<Word**, Kokkos::LayoutRight, Device>;  ///< a set
+  Rows occupied;                                                   ///< [row][word]: non-void cells
+  Rows exterior;                                                   ///< [row][word]: E1
+  Rows boundary;                                                   ///< [row][word]: E1 and E2
   Rows underfilled;  ///< [row][word]: cells of E2 for want of particles; no rows without a fill criterion
   Rows outside;      ///< [row][word]: void cells that may be of E1; no rows without a void filter
   CarriedTractions<Device> carried;  ///< those whose surface moves with the material
@@ -36,12 +36,16 @@ KOKKOS_INLINE_FUNCTION std::uint64_t valid_bits(int w, int count) {
 /// How rows of bits along x tile a grid.
 template <int Dim>
 struct BitRows {
-  int cells_x;
-  Vector<2, int> cell_rows;    ///< rows of cells in y and z
-  Vector<2, int> node_rows;    ///< rows of nodes in y and z
-  int words;                   ///< words per row, of cells and of nodes
-  Vector<3, int> first, last;  ///< the cells that exist, in each direction
+  int cells_x;               ///< cells of a row
+  Vector<2, int> cell_rows;  ///< rows of cells in y and z
+  Vector<2, int> node_rows;  ///< rows of nodes in y and z
+  int words;                 ///< words per row, of cells and of nodes
+  ///@{
+  /// The lowest and the highest cell that exist in each direction; 0 in those left out.
+  Vector<3, int> first, last;
+  ///@}
 
+  /// All cells of a grid exist.
   KOKKOS_FUNCTION explicit BitRows(const CellNumbering<Dim>& grid) : cells_x(grid.cells[0]) {
     for (int i = 0; i < 2; ++i) {
       cell_rows[i] = i + 1 < Dim ? grid.cells[i + 1] : 1;
@@ -63,12 +67,16 @@ struct BitRows {
     }
     return rows;
   }
+  ///@{
   /// The row of cells at (j, k), and back; CellNumbering::row_index says the same of a cell.
   KOKKOS_FUNCTION int cell_row(int j, int k) const { return k * cell_rows[0] + j; }
   KOKKOS_FUNCTION Vector<2, int> cell_row_place(int r) const {
     return {{r % cell_rows[0], r / cell_rows[0]}};
   }
+  ///@}
+  /// Rows of cells.
   KOKKOS_FUNCTION int cell_row_count() const { return cell_rows[0] * cell_rows[1]; }
+  /// Rows of nodes.
   KOKKOS_FUNCTION int node_row_count() const { return node_rows[0] * node_rows[1]; }
 
   /// The bits of word w that stand for cells (upper = 0) or nodes (upper = 1) first, ..., last + upper of the

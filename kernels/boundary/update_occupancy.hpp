@@ -20,16 +20,16 @@ namespace vsb {
 /// Cells, bins and boundary nodes of a set of particles; kept from step to step.
 template <class Device>
 struct Occupancy {
-  ParticleBins<Device> bins;
-  CellBits<Device> cells;
+  ParticleBins<Device> bins;        ///< of the particles
+  CellBits<Device> cells;           ///< E1, E2 and the other sets of Algorithm 1
   BoundaryNodes<Device> tractions;  ///< [node]: the tractions declared at the node
   BoundaryNodes<Device> boundary;   ///< [node]: the tractions that act there, N1 of Algorithm 1
   TractionMask conservative = 0;    ///< the tractions that act at all active nodes, where they are declared
   BoundaryNodes<Device> marked;     ///< [node]: `tractions` as the last update found them
-  TractionMask marked_conservative = 0;
-  TractionMask declared = 0;  ///< the tractions that were declared at any node so far
-  int boundary_node_count = 0;
-  double minimum_fill = 0;  ///< of a cell's volume, see set_fill_criterion; 0: no criterion
+  TractionMask marked_conservative = 0;  ///< `conservative` as the last update found it
+  TractionMask declared = 0;             ///< the tractions that were declared at any node so far
+  int boundary_node_count = 0;           ///< nodes at which some traction acts
+  double minimum_fill = 0;               ///< of a cell's volume, see set_fill_criterion; 0: no criterion
 };
 
 /// Allocates the occupancy of `particles` particles; no traction is declared anywhere yet.

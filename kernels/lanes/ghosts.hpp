@@ -20,9 +20,9 @@ namespace vsb {
 /// Ghost nodes by their images; nodes are those of cell lanes.
 template <class Device>
 struct LaneGhosts {
-  Kokkos::View<int*, Device> image;             ///< [image]: node
+  Kokkos::View<int*, Device> image;             ///< [image]: number of its node
   Kokkos::View<int*, Device> first;             ///< [images + 1]: its ghosts
-  Kokkos::View<int*, Device> ghost;             ///< [ghost]: node
+  Kokkos::View<int*, Device> ghost;             ///< [ghost]: number of its node
   Kokkos::View<ComponentMask*, Device> turned;  ///< [ghost]: bit i: component i changes its sign
 };
 

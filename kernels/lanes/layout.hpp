@@ -298,7 +298,10 @@ void number_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const Cell
 
 /// The members of a group that do not follow from the others.
 struct GroupShape {
+  ///@{
+  /// As in LaneGroup.
   int x, row, slots, capacity;
+  ///@}
 };
 
 /// Lays lanes out with given groups. The caller fills columns and numbers of the particles. Returns false,

@@ -19,21 +19,22 @@ namespace vsb {
 /// What a step on cell lanes works on.
 template <int Dim, class Real, class Device>
 struct LaneState {
-  static constexpr bool splines = false;
-  using device = Device;
-  LaneMemory<Dim, Real, Device> memory;
-  LaneBoundary<Dim, Device> boundary;
+  static constexpr bool splines = false;         ///< whether cells are dual
+  using device = Device;                         ///< where the memory is
+  LaneMemory<Dim, Real, Device> memory;          ///< packed particles, nodes and grid
+  LaneBoundary<Dim, Device> boundary;            ///< declared tractions, and the nodes at which they act
   LaneSurfacePoints<Dim, Real, Device> surface;  ///< none, unless a traction is imposed on points
-  TractionMask original = 0;  ///< tractions of the original method, which the sweeps leave out
-  int gauss_points = 2;       ///< of these, per direction, 1 to 4
-  long long repacked = 0;     ///< times
-  int steps_since_repacked = 1000;
-  int steps_of_flow = 0;     ///< the last ones in a row in which many particles left their cells
-  bool unmarked = false;     ///< cells turned void or filled since the boundary was marked
-  bool prepared = false;     ///< whether the nodes have the sums of the step to come
-  bool loads_due = false;    ///< of the step to come, by add_lane_loads
-  bool loads_found = false;  ///< whether the load has been found to act at some node
+  TractionMask original = 0;        ///< tractions of the original method, which the sweeps leave out
+  int gauss_points = 2;             ///< of these, per direction, 1 to 4
+  long long repacked = 0;           ///< times
+  int steps_since_repacked = 1000;  ///< since all particles were packed anew, or 1000 at first
+  int steps_of_flow = 0;            ///< the last ones in a row in which many particles left their cells
+  bool unmarked = false;            ///< cells turned void or filled since the boundary was marked
+  bool prepared = false;            ///< whether the nodes have the sums of the step to come
+  bool loads_due = false;           ///< of the step to come, by add_lane_loads
+  bool loads_found = false;         ///< whether the load has been found to act at some node
 
+  /// Whether the cells of the grid are cubes (squares in 2D).
   bool cubic() const {
     for (int i = 1; i < Dim; ++i)
       if (memory.grid.spacing[i] != memory.grid.spacing[0]) return false;

@@ -23,6 +23,7 @@ struct MasksOfLanes {
 
 }  // namespace kernel
 
+///@{
 /// The cells of one traction, given by its bit. The marks must be up to date. Waits for the device.
 template <class Exec, int Dim, class Real, class Device>
 LoadedCells count_loaded_cells(const Exec& exec, const LaneState<Dim, Real, Device>& s,
@@ -38,5 +39,6 @@ LoadedCells count_loaded_cells(const Exec& exec, const SplineLaneState<Dim, Real
       exec, s.boundary.bits, dual_tiling(s.memory.lanes, s.grid.cells, s.memory.walls),
       kernel::MasksOfLanes<Dim, Real, Device>{s.memory.lanes, s.boundary.tractions}, traction);
 }
+///@}
 
 }  // namespace vsb

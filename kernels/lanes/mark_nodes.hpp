@@ -14,10 +14,13 @@ namespace vsb {
 /// Which tractions act on the nodes of cell lanes.
 template <int Dim, class Device>
 struct LaneBoundary {
-  using Rows = typename CellBits<Device>::Rows;
-  CellBits<Device> bits;               ///< of the box; bits.occupied is kept up to date by every sweep. With
-                                       ///< dual cells, of the grid's cells from the lowest node of the box on
-  Rows marked, active;                 ///< [row of nodes of the box][word]: N1, and nodes with mass
+  using Rows = typename CellBits<Device>::Rows;  ///< sets of cells or nodes
+  CellBits<Device> bits;  ///< of the box; bits.occupied is kept up to date by every sweep. With
+                          ///< dual cells, of the grid's cells from the lowest node of the box on
+  ///@{
+  /// [row of nodes of the box][word]: N1, and nodes with mass.
+  Rows marked, active;
+  ///@}
   Kokkos::View<int*, Device> changed;  ///< [row of nodes]: 1 where tractions changed
   Kokkos::View<int*, Device> stale;    ///< [layer]: 1 where the load of a group changed with the last marking
   BoundaryNodes<Device> tractions;     ///< [node of the lanes]: those that act there
@@ -27,9 +30,12 @@ struct LaneBoundary {
   Kokkos::View<const TractionMask*, Device> declared;
   TractionMask conservative = 0;  ///< those that act at all active nodes
   TractionMask all_declared = 0;  ///< declared at any node so far. The members below belong to the marks
+  ///@{
+  /// `everywhere` and `conservative` as the last marking found them.
   TractionMask marked_everywhere = 0, marked_conservative = 0;
-  const TractionMask* marked_declared = nullptr;
-  bool up_to_date = false;  ///< whether the members above belong to declarations
+  ///@}
+  const TractionMask* marked_declared = nullptr;  ///< the memory of `declared` at the last marking
+  bool up_to_date = false;                        ///< whether the members above belong to declarations
 };
 
 namespace kernel {

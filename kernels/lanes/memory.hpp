@@ -13,7 +13,11 @@ namespace vsb {
 /// rows along the other axes.
 template <int Dim>
 struct Reach {
+  ///@{
+  /// In groups along x, in rows along the other axes; 0: only where particles are.
   Vector<Dim, int> below = Vector<Dim, int>::zero(), above = Vector<Dim, int>::zero();
+  ///@}
+  /// Whether there is room beyond the particles in some direction.
   bool any() const {
     bool some = false;
     for (int i = 0; i < Dim; ++i) some = some || below[i] > 0 || above[i] > 0;
@@ -39,18 +43,18 @@ bool one_sweep_is_faster(const CellLanes<Dim, Real, Device>& lanes, int cells_wi
 /// What the cell lanes of a body need beside the particles.
 template <int Dim, class Real, class Device>
 struct LaneMemory {
-  CellLanes<Dim, Real, Device> lanes;
-  LaneNodes<Dim, Real, Device> nodes;
-  Leavers<Dim, Real, Device> leavers;
-  UniformGrid<Dim, Real> grid;
-  Walls<Dim> walls;
+  CellLanes<Dim, Real, Device> lanes;  ///< the packed particles
+  LaneNodes<Dim, Real, Device> nodes;  ///< of the groups
+  Leavers<Dim, Real, Device> leavers;  ///< particles under way to another cell
+  UniformGrid<Dim, Real> grid;         ///< of the cells in the lanes
+  Walls<Dim> walls;                    ///< faces whose ghost nodes are mirror images, for dual cells
   UniformGrid<Dim, Real> packed_grid;  ///< what `grid` and `walls` were when the nodes were numbered
-  Walls<Dim> packed_walls;
-  int slack = 1;  ///< slots that a group has to spare
-  Reach<Dim> reach;
-  Sweeps sweeps = Sweeps::chosen;
+  Walls<Dim> packed_walls;             ///< see packed_grid
+  int slack = 1;                       ///< slots that a group has to spare
+  Reach<Dim> reach;                    ///< of every packing, until particles stay in their groups for long
+  Sweeps sweeps = Sweeps::chosen;      ///< how steps re-map
   typename CellLanes<Dim, Real, Device>::Ints source;  ///< scratch of repack_lanes, as is column_before
-  Kokkos::View<Real*, Device> column_before;
+  Kokkos::View<Real*, Device> column_before;           ///< see source
 };
 
 /// Makes steps re-map by the mass matrix (`one` sweep), or in a second sweep.

@@ -251,7 +251,11 @@ int count_leavers(const Exec& exec, const LaneMemory<Dim, Real, Device>& m) {
 /// How many particles found no group at their new cell, or no free slot in it; and how many layers are
 /// without sums.
 struct HomelessCount {
+  ///@{
+  /// Numbers of particles, and of layers.
   int without_group = 0, without_slot = 0, unsummed_layers = 0;
+  ///@}
+  /// Whether a particle found no place, so that all are to be packed anew.
   bool any() const { return without_group + without_slot > 0; }
 };
 

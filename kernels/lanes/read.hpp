@@ -118,6 +118,7 @@ struct UnpackMassPoints {
 
 }  // namespace kernel
 
+/// Finds the entries and groups of all particles. They are valid until the next step.
 template <class Exec, int Dim, class Real, class Device>
 LanePlaces<Device> find_places(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes) {
   const auto ints = [](const std::string& name, int n) {

@@ -163,6 +163,7 @@ TractionResultant<Dim> lane_resultant(const Exec& exec, const LaneState<Dim, Rea
 
 }  // namespace detail
 
+///@{
 /// The resultant of the tractions in `among` on the particles at their present positions. Waits for the
 /// device.
 template <class Exec, class Field, int Dim, class Real, class Device>
@@ -179,5 +180,6 @@ TractionResultant<Dim> resultant(const Exec& exec, const SplineLaneState<Dim, Re
   return detail::lane_resultant<kernel::SplineLaneParticle<Dim, Real, Device>>(
       exec, s, s.memory.walls, s.grid, virtual_stress, among, cover);
 }
+///@}
 
 }  // namespace vsb

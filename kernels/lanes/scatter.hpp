@@ -37,6 +37,7 @@ class LayerSums {
   static constexpr int rows = LaneGroup<Dim>::corner_rows;
 
  public:
+  /// Of these nodes; reads and writes no sums yet.
   KOKKOS_FUNCTION explicit LayerSums(const LaneNodes<Dim, Real, Device>& nodes) : nodes_(nodes) {}
   /// Sets the sums of a layer to zero; kernels/lanes/update_nodes.hpp leaves them so.
   KOKKOS_FUNCTION void begin_anew(const CellLanes<Dim, Real, Device>& lanes, int layer) const {
@@ -74,6 +75,7 @@ class LayerSums {
       carried = at_node[2 * r + 1];
     });
   }
+  /// Call it after the last group of the layer: adds what was kept for a next group.
   KOKKOS_FUNCTION void end() {
     if (next_x_ < 0) return;
     for (int c = 0; c < Count; ++c)

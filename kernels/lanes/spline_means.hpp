@@ -19,7 +19,11 @@ namespace vsb {
 /// the centre inside is constant.
 template <int Dim, class P>
 struct CentreRoom {
+  ///@{
+  /// Per lane, in [0, 1].
   Vector<Dim, P> least, most;
+  ///@}
+  /// xi limited to the range, component by component.
   KOKKOS_FORCEINLINE_FUNCTION Vector<Dim, P> place(const Vector<Dim, P>& xi) const {
     Vector<Dim, P> along;
     static_for<Dim>([&](auto i) VSB_UNROLLED {
@@ -138,8 +142,11 @@ struct SumLaneDivergence {
 /// Which functions are small, and which they merge into.
 template <class Device>
 struct SmallMeans {
-  Kokkos::View<LaneMask*, Device> small, taken;  ///< [chunk]: small functions; those that others merge into
-  Kokkos::View<int*, Device> home;               ///< [node]: of a small function, the node it merges into
+  ///@{
+  /// [chunk]: small functions; those that others merge into.
+  Kokkos::View<LaneMask*, Device> small, taken;
+  ///@}
+  Kokkos::View<int*, Device> home;  ///< [node]: of a small function, the node it merges into
 };
 
 namespace kernel {

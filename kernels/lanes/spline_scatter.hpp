@@ -29,6 +29,7 @@ class SplineLayerSums {
   static constexpr int rows = LaneStencil<Dim>::rows;
 
  public:
+  /// Sets the sums of the layer to zero.
   KOKKOS_FUNCTION SplineLayerSums(const CellLanes<Dim, Real, Device>& lanes,
                                   const LaneNodes<Dim, Real, Device>& nodes, int layer)
       : nodes_(nodes) {
@@ -66,6 +67,7 @@ class SplineLayerSums {
       above = at_node[3 * r + 2];
     });
   }
+  /// Call it after the last group of the layer: adds what was kept for a next group.
   KOKKOS_FUNCTION void end() {
     if (next_x_ < 0) return;
     for (int c = 0; c < Count; ++c)

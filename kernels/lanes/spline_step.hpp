@@ -28,12 +28,12 @@ UniformGrid<Dim, Real> dual_grid(const UniformGrid<Dim, Real>& grid) {
 /// [node of the grid with its ghost layer].
 template <int Dim, class Real, class Device>
 struct SplineLaneState : LaneState<Dim, Real, Device> {
-  static constexpr bool splines = true;
-  UniformGrid<Dim, Real> grid;  ///< of the scene, without a ghost layer
-  LaneGhosts<Device> ghosts;
-  LaneCorners<Device> corners;
-  Kokkos::View<int*, Device> crossed;  ///< [layer]: 1 where particles changed the cell of the scene's grid
-  SmallMeans<Device> small_means;      ///< memory of average_lane_divergence
+  static constexpr bool splines = true;  ///< whether cells are dual
+  UniformGrid<Dim, Real> grid;           ///< of the scene, without a ghost layer
+  LaneGhosts<Device> ghosts;             ///< the nodes beyond walls, and their images
+  LaneCorners<Device> corners;           ///< which cells of the scene's grid the particles are in
+  Kokkos::View<int*, Device> crossed;    ///< [layer]: 1 where particles changed the cell of the scene's grid
+  SmallMeans<Device> small_means;        ///< memory of average_lane_divergence
 };
 
 /// The grid of the scene; before packing.

@@ -24,8 +24,8 @@ namespace vsb {
 /// What the sums of a loaded group need beside its particles.
 template <int Dim, class Real, class Device>
 struct LoadedLanes {
-  CellLanes<Dim, Real, Device> lanes;
-  UniformGrid<Dim, Real> grid;
+  CellLanes<Dim, Real, Device> lanes;                   ///< the packed particles
+  UniformGrid<Dim, Real> grid;                          ///< of the cells in the lanes
   Kokkos::View<const TractionMask*, Device> tractions;  ///< [node of the lanes]: those that act there
 };
 

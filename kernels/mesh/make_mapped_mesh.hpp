@@ -17,8 +17,8 @@ namespace vsb {
 /// A mapped grid with its memory. Kernels take `grid`; it is valid as long as `nodes` lives.
 template <int Dim, class Real, class Device>
 struct MappedMesh {
-  MappedNodes<Real, Device> nodes;
-  MappedGrid<Dim, Real> grid;
+  MappedNodes<Real, Device> nodes;  ///< memory of the grid
+  MappedGrid<Dim, Real> grid;       ///< points into `nodes`
 };
 
 namespace mapped {

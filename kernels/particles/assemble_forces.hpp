@@ -17,7 +17,10 @@ namespace vsb {
 /// Memory that the sums keep between calls.
 template <class Real, class Device>
 struct ForceWorkspace {
+  ///@{
+  /// Of the sums over particles, and over surface points.
   ScatterWorkspace<Real, Device> particles, surface;
+  ///@}
 };
 
 /// Overwrites nodes.sums; the occupancy must be up to date. Returns -1, or the lowest number of a surface

@@ -22,11 +22,11 @@ namespace vsb {
 /// The mean divergence of the particles, with scratch memory; empty until average_divergence is called.
 template <class Real, class Device>
 struct MeanDivergence {
-  using Numbers = Kokkos::View<Real*, Device>;
+  using Numbers = Kokkos::View<Real*, Device>;  ///< one number per particle or function
   Numbers of_particle;  ///< [particle]: thetabar, 1/s (1 for displacements); not read where it is empty
   Numbers of_function;  ///< [function]: theta_c of one body
   typename ScatterWorkspace<Real, Device>::Target sums;  ///< [function][2]: V M_c, V M_c theta of one body
-  ScatterWorkspace<Real, Device> workspace;
+  ScatterWorkspace<Real, Device> workspace;              ///< of these sums
 };
 
 /// beta of a material, and 0 without a mean divergence.

@@ -16,15 +16,17 @@ namespace vsb {
 /// A virtual stress of which some tractions act by the original method.
 template <class Field, class Grid, class Device>
 struct OriginalVirtualStress {
-  static constexpr bool loaded = Field::loaded;
-  static constexpr bool cell_quadrature = true;
-  Field field;
-  Grid grid;
-  CellBits<Device> cells;
-  TractionMask original;  ///< the tractions of the original method
-  int gauss_points;       ///< per direction, 1 to 4
+  static constexpr bool loaded = Field::loaded;  ///< as the field
+  static constexpr bool cell_quadrature = true;  ///< kernels sum over whole cells, too
+  Field field;                                   ///< of all tractions, of either method
+  Grid grid;                                     ///< of the basis
+  CellBits<Device> cells;                        ///< E1 and E2 of Algorithm 1
+  TractionMask original;                         ///< the tractions of the original method
+  int gauss_points;                              ///< per direction, 1 to 4
 
+  /// The tractions that `field` has a stress for.
   TractionMask known() const { return field.known(); }
+  /// The sum of the fields of the tractions in the mask at x in m.
   template <class X>
   KOKKOS_FUNCTION auto at(const X& x, TractionMask mask) const {
     return field.at(x, mask);
@@ -34,6 +36,7 @@ struct OriginalVirtualStress {
   KOKKOS_FUNCTION TractionMask acting_at(const X& x) const {
     return is_boundary(grid.cell_containing(x)) ? ~TractionMask(0) : ~original;
   }
+  /// Whether a cell (i, j, k) is one of E1 or E2.
   template <int Dim>
   KOKKOS_FUNCTION bool is_boundary(const Vector<Dim, int>& cell) const {
     return cells.boundary(grid.row_index(cell), cell[0] / 64) >> (cell[0] % 64) & 1;

@@ -18,12 +18,14 @@
 
 namespace vsb {
 
+/// How the sums are made; the top of this file compares the three ways.
 enum class Scatter { atomic, duplicated, gathered };
 
 /// Memory that scatter keeps between calls; one for each target.
 template <class Real, class Device>
 struct ScatterWorkspace {
-  using Target = Kokkos::View<Real**, Kokkos::LayoutRight, Device>;
+  using Target = Kokkos::View<Real**, Kokkos::LayoutRight, Device>;  ///< [node][column]: where sums go
+  /// What Kokkos duplicates per thread.
   using Duplicated =
       Kokkos::Experimental::ScatterView<Real**, Kokkos::LayoutRight, Device, Kokkos::Experimental::ScatterSum,
                                         Kokkos::Experimental::ScatterDuplicated,

@@ -19,6 +19,7 @@
 
 namespace vsb {
 
+/// Forces and energies of a state; the equations are at the top of this file.
 template <int Dim>
 struct Balance {
   double unbalanced_force;        ///< N

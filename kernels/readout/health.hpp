@@ -8,12 +8,13 @@
 
 namespace vsb {
 
+/// The fields that are checked, in this order.
 enum class ParticleField { position, velocity, cauchy_stress, volume, none };
 
 /// A particle and its invalid field; particle -1 where all fields are valid.
 struct Invalid {
-  int particle;
-  ParticleField field;
+  int particle;         ///< the lowest number of an invalid one
+  ParticleField field;  ///< its first invalid field
 };
 
 namespace kernel {

@@ -12,7 +12,10 @@ namespace vsb {
 
 /// Cells of one traction.
 struct LoadedCells {
+  ///@{
+  /// Cells of E2 loaded wholly, and partly, as at the top of this file.
   int whole = 0, part = 0;
+  ///@}
 };
 
 namespace kernel {

@@ -25,6 +25,8 @@
 
 namespace vsb {
 
+/// The resultant of tractions over all nodes, without the faces of the grid; the equations are at the top of
+/// this file.
 template <int Dim>
 struct TractionResultant {
   Vector<Dim, double> force;  ///< N

@@ -20,15 +20,17 @@
 
 namespace vsb {
 
+/// When the iteration for the static state ends.
 struct StaticOptions {
-  double residual = 1e-10;  ///< relative, at which the solution counts as found
-  int max_iterations = 20000;
+  double residual = 1e-10;     ///< relative, at which the solution counts as found
+  int max_iterations = 20000;  ///< after so many it ends without convergence
 };
 
+/// How the iteration ended.
 struct StaticResult {
-  int iterations;
+  int iterations;   ///< made
   double residual;  ///< relative
-  bool converged;
+  bool converged;   ///< whether the residual of the options was reached
 };
 
 namespace kernel {

@@ -85,8 +85,11 @@ struct AddNodalSums {
 template <class Basis, int Dim, class Real, class Device>
 class Stiffness {
  public:
-  using Fields = typename Nodes<Dim, Real, Device>::Fields;
+  using Fields = typename Nodes<Dim, Real, Device>::Fields;  ///< one row per node
 
+  /// Of all bodies at the present positions, by the small-strain law of their materials. Sums are made by
+  /// `strategy`. With Volumetric::averaged a mean replaces the divergence, as in steps. The object holds
+  /// Views of the caller's data, no copies.
   Stiffness(const Particles<Dim, Real, Device>& particles, const std::vector<Body<Real>>& bodies,
             const Basis& basis, const ParticleBins<Device>& bins, Scatter strategy,
             Volumetric volumetric = Volumetric::full)

@@ -15,9 +15,10 @@
 
 namespace vsb {
 
+/// The load of a body that no support takes up.
 template <int Dim>
 struct UnsupportedLoad {
-  bool found = false;
+  bool found = false;            ///< whether a body has one; else all members below are zero
   double share = 0;              ///< of the sum of the nodal forces on the body
   Vector<Dim, double> middle{};  ///< of the body's nodes, m
   Vector<Dim, double> force{};   ///< N
