@@ -49,30 +49,28 @@ std::string refusal(const Scene& scene) {
 
 }  // namespace
 
-void read_basis(TableReader& r, Scene& scene) {
-  static const std::vector<std::string> names = {"linear", "ugimp", "quadratic_bspline"};
-  const std::string name = r.choice("basis", names, names[scene.setting == Setting::accurate ? 2 : 0]);
-  scene.method.basis = static_cast<BasisKind>(std::find(names.begin(), names.end(), name) - names.begin());
-  if (scene.method.basis != BasisKind::linear)
+void read_basis(TableReader& r, const BasisKeys& keys, Scene& scene) {
+  const auto basis = r.read<BasisKind>(
+      keys.basis, scene.setting == Setting::accurate ? BasisKind::quadratic_bspline : BasisKind::linear);
+  scene.method.basis = basis;
+  if (basis != BasisKind::linear)
     if (const auto reason = refusal(scene); !reason.empty()) {
-      if (const auto* node = r.source().get("basis"))
-        r.fail(*node, "basis", fmt::format("\"{}\" {}", name, reason));
-      r.missing("basis",
+      const auto& name = keys.basis.word(basis);
+      if (r.has(keys.basis)) r.fail(keys.basis, fmt::format("\"{}\" {}", name, reason));
+      r.missing(keys.basis,
                 fmt::format("\"linear\": \"{}\", which setting = \"accurate\" takes, {}", name, reason));
     }
-  if (scene.method.basis != BasisKind::ugimp) {
-    if (const auto* node = r.source().get("gimp_half_width"))
-      r.fail(*node, "gimp_half_width", "is for basis = \"ugimp\"");
+  const auto& half_width = keys.gimp_half_width;
+  if (basis != BasisKind::ugimp) {
+    if (r.has(half_width)) r.fail(half_width, "is for basis = \"ugimp\"");
     return;
   }
   const auto preset = default_half_width(scene);
-  if (!preset && !r.has("gimp_half_width"))
+  if (!preset && !r.has(half_width))
     r.missing(
-        "gimp_half_width",
+        half_width,
         "a number > 0 and <= 0.5, half the size of a particle in cells: no lattice of cells to take it from");
-  const auto width =
-      r.number_or_numbers("gimp_half_width", static_cast<size_t>(scene.dimension), {0, 0.5, true, false},
-                          preset, "half the size of a particle, in cells");
+  const auto width = r.read(half_width, static_cast<size_t>(scene.dimension), preset);
   std::copy(width.begin(), width.end(), scene.method.gimp_half_width.begin());
 }
 

@@ -8,8 +8,26 @@
 
 namespace vsb::app {
 
-/// Reads the keys `basis` and `gimp_half_width` into scene.method, whose other keys need not be known; grid,
-/// bodies and tractions must. Refuses what the basis cannot do.
-void read_basis(TableReader& method_table, Scene& scene);
+struct BasisKeys {
+  KeyTable& method;
+  ChoiceKeyOf<BasisKind> basis{method,
+                               "basis",
+                               {{"linear", BasisKind::linear, "the paper's"},
+                                {"ugimp", BasisKind::ugimp},
+                                {"quadratic_bspline", BasisKind::quadratic_bspline,
+                                 "smooth: for accuracy, and where particles cross cells"}},
+                               in_words("`\"linear\"`; `\"quadratic_bspline\"` with setting = \"accurate\""),
+                               "the functions between particles and nodes"};
+  NumberOrNumbersKey gimp_half_width{method,
+                                     "gimp_half_width",
+                                     {0, 0.5, true, false},
+                                     in_words("half the particles' spacing"),
+                                     "",
+                                     "of ugimp: half the size of a particle, in cells"};
+};
+
+/// Reads them into scene.method, whose other keys need not be known; grid, bodies and tractions must. Refuses
+/// what the basis cannot do.
+void read_basis(TableReader& method_table, const BasisKeys& keys, Scene& scene);
 
 }  // namespace vsb::app

@@ -19,22 +19,21 @@ constexpr double most_mapped_nodes = 1e8;
 GridSpec read_uniform(TableReader& r, int dimension) {
   const auto d = static_cast<size_t>(dimension);
   GridSpec grid;
-  const auto lower = r.numbers("lower", d, Range::any(), {}, "m, corner of the grid");
-  const auto upper = r.numbers("upper", d, Range::any(), {}, "m, opposite corner");
-  const auto spacing = r.number_or_numbers("spacing", d, Range::positive(), {}, "m, cell size");
+  const auto lower = r.read(grid_keys.lower.of(d));
+  const auto upper = r.read(grid_keys.upper.of(d));
+  const auto spacing = r.read(grid_keys.spacing, d);
   double nodes = 1;
   for (size_t i = 0; i < d; ++i) {
     const double cells = (upper[i] - lower[i]) / spacing[i];
     const double rounded = std::round(cells);
     if (!(rounded >= 1) || std::abs(cells - rounded) > 1e-6 * rounded)
-      r.fail(*r.source().get("upper"), "upper",
+      r.fail(grid_keys.upper,
              fmt::format(
                  "must lie a whole number of cells (>= 1) above 'lower'; in {} there are {} cells of {} m",
                  axis_names[i], cells, spacing[i]));
     nodes *= rounded + 1;
     if (nodes > 1e9)
-      r.fail(*r.source().get("spacing"), "spacing",
-             fmt::format("the grid must have <= 1e9 nodes, not {:.3g}", nodes));
+      r.fail(grid_keys.spacing, fmt::format("the grid must have <= 1e9 nodes, not {:.3g}", nodes));
     grid.lower[i] = lower[i];
     grid.spacing[i] = spacing[i];
     grid.cells[i] = static_cast<int>(rounded);
@@ -47,20 +46,20 @@ void set_axis(GridSpec& grid, size_t axis, std::vector<double> nodes) {
   grid.coordinates[axis] = std::move(nodes);
 }
 
-void limit_nodes(const TableReader& r, const toml::node& at, const std::string& key, const GridSpec& grid) {
+void limit_nodes(const TableReader& r, const Key& key, const GridSpec& grid) {
   double nodes = 1;
   for (const auto& axis : grid.coordinates) nodes *= std::max(1.0, static_cast<double>(axis.size()));
   if (nodes > most_mapped_nodes)
-    r.fail(at, key, fmt::format("the grid must have <= {:g} nodes, not {:.3g}", most_mapped_nodes, nodes));
+    r.fail(key, fmt::format("the grid must have <= {:g} nodes, not {:.3g}", most_mapped_nodes, nodes));
 }
 
 GridSpec read_rectilinear(TableReader& r, int dimension) {
   GridSpec grid;
   for (size_t i = 0; i < static_cast<size_t>(dimension); ++i) {
-    set_axis(grid, i, r.increasing_numbers(axis_names[i], "m, nodes"));
+    set_axis(grid, i, r.read(grid_keys.axis(i)));
     grid.lower[i] = grid.coordinates[i].front();
   }
-  limit_nodes(r, *r.source().get("x"), "x", grid);
+  limit_nodes(r, grid_keys.x, grid);
   return grid;
 }
 
@@ -73,48 +72,44 @@ std::vector<double> equal_intervals(double low, double high, int count) {
 }
 
 /// Equal intervals between the two numbers of a key, which must be so many different numbers.
-std::vector<double> divided(const TableReader& r, const std::string& key, const std::vector<double>& ends,
+std::vector<double> divided(const TableReader& r, const Key& key, const std::vector<double>& ends,
                             int count) {
   auto nodes = equal_intervals(ends[0], ends[1], count);
   if (std::adjacent_find(nodes.begin(), nodes.end(), [](double a, double b) { return !(b > a); }) !=
       nodes.end())
-    r.fail(
-        *r.source().get(key), key,
-        fmt::format("lie too close together for {} cells: double precision has not as many numbers between "
+    r.fail(key, fmt::format(
+                    "lie too close together for {} cells: double precision has not as many numbers between "
                     "them",
                     count));
   return nodes;
 }
 
 GridSpec read_polar(TableReader& document, int dimension) {
-  if (dimension == 1)
-    document.fail(*document.source().get("polar"), "polar", "a polar grid is for dimension 2 or 3");
-  TableReader r = document.table("polar");
-  r.allow_only({"center", "radii", "radial_cells", "angles", "angular_cells", "z"});
+  if (dimension == 1) document.fail(grid_keys.polar, "a polar grid is for dimension 2 or 3");
+  TableReader r = document.table(grid_keys.polar);
+  const auto& keys = polar_keys;
   GridSpec grid;
   grid.polar = true;
-  const auto center = r.numbers("center", 2, Range::any(), std::vector<double>{0, 0}, "m");
+  const auto center = r.read(keys.center);
   std::copy(center.begin(), center.end(), grid.center.begin());
-  const int most = 1'000'000;
-  const auto radii = r.numbers("radii", 2, Range::positive(), {}, "m");
-  if (!(radii[1] > radii[0])) r.fail(*r.source().get("radii"), "radii", "must increase");
-  const auto radial = static_cast<int>(r.integer("radial_cells", 1, most));
-  const auto angles = r.numbers("angles", 2, Range::between(-360, 360), {}, "degrees from x towards y");
+  const auto radii = r.read(keys.radii);
+  if (!(radii[1] > radii[0])) r.fail(keys.radii, "must increase");
+  const auto radial = static_cast<int>(r.read(keys.radial_cells));
+  const auto angles = r.read(keys.angles);
   const double span = angles[1] - angles[0];
   if (!(span > 0 && span < 360))
-    r.fail(*r.source().get("angles"), "angles",
+    r.fail(keys.angles,
            "must increase, by less than 360 degrees: the faces theta_min and theta_max are not joined");
-  const auto angular = static_cast<int>(r.integer("angular_cells", 1, most));
+  const auto angular = static_cast<int>(r.read(keys.angular_cells));
   if (span / angular > 90)
-    r.fail(*r.source().get("angular_cells"), "angular_cells",
-           fmt::format("a cell must span <= 90 degrees, not {:g}", span / angular));
+    r.fail(keys.angular_cells, fmt::format("a cell must span <= 90 degrees, not {:g}", span / angular));
   const double degree = std::acos(-1.0) / 180;
-  set_axis(grid, 0, divided(r, "radii", radii, radial));
-  auto theta = divided(r, "angles", angles, angular);
+  set_axis(grid, 0, divided(r, keys.radii, radii, radial));
+  auto theta = divided(r, keys.angles, angles, angular);
   for (auto& angle : theta) angle *= degree;
   set_axis(grid, 1, std::move(theta));
-  if (dimension == 3) set_axis(grid, 2, r.increasing_numbers("z", "m, nodes"));
-  limit_nodes(r, *r.source().get("radial_cells"), "radial_cells", grid);
+  if (dimension == 3) set_axis(grid, 2, r.read(keys.z));
+  limit_nodes(r, keys.radial_cells, grid);
   r.finish();
   return grid;
 }
@@ -123,15 +118,14 @@ GridSpec read_polar(TableReader& document, int dimension) {
 constexpr double coarsest_coordinate = 1e-6;
 
 /// Refuses coordinates so large that two of them a small share of a cell apart are the same number.
-void refuse_coarse_coordinates(const TableReader& r, const std::string& key, const GridSpec& grid,
-                               int dimension) {
+void refuse_coarse_coordinates(const TableReader& r, const Key& key, const GridSpec& grid, int dimension) {
   const auto box = bounding_box(grid, dimension);
   const double h = shortest_edge(grid, dimension);
   for (size_t i = 0; i < static_cast<size_t>(dimension); ++i) {
     const double farthest = std::max(std::abs(box.lower[i]), std::abs(box.upper[i]));
     const double step = std::numeric_limits<double>::epsilon() * farthest;
     if (step > coarsest_coordinate * h)
-      r.fail(*r.source().get(key), key,
+      r.fail(key,
              fmt::format(
                  "the grid lies up to {:.6g} m from the origin along {}, where numbers are {:.2g} m apart, "
                  "and its cells are {:.6g} m: move the scene to within {:.3g} m",
@@ -141,25 +135,24 @@ void refuse_coarse_coordinates(const TableReader& r, const std::string& key, con
 }
 
 /// The components that are fixed at a face, and whether it lets particles go.
-unsigned char read_face(TableReader& r, const std::string& key, size_t axis, int dimension, bool polar,
+unsigned char read_face(TableReader& r, const FaceKey& key, size_t axis, int dimension, bool polar,
                         bool& outflow) {
-  const toml::node* written = r.source().get(key);
+  const toml::node* written = r.written(key);
   if (written && written->is_array()) {
     const std::vector<std::string> allowed(axis_names.begin(), axis_names.begin() + dimension);
-    if (written->as_array()->empty()) r.fail(*written, key, "must name a component; an open face is 'open'");
+    if (written->as_array()->empty()) r.fail(key, "must name a component; an open face is 'open'");
     int mask = 0;
-    for (const auto& component : r.texts(key, allowed)) mask |= 1 << (component[0] - 'x');
+    for (const auto& component : r.words(key, allowed)) mask |= 1 << (component[0] - 'x');
     return static_cast<unsigned char>(mask);
   }
   // Components are along x, y and z; the normal of a face of constant r or theta is not.
   const bool no_roller = polar && axis < 2;
   if (no_roller && written && written->value<std::string>() == "roller")
-    r.fail(*written, key,
+    r.fail(key,
            "must be 'open', 'outflow', 'fixed' or a list of fixed components such as [\"y\"]: a roller "
            "needs a face across x, y or z");
-  const auto kinds = no_roller ? std::vector<std::string>{"open", "outflow", "fixed"}
-                               : std::vector<std::string>{"open", "outflow", "roller", "fixed"};
-  const std::string kind = r.choice(key, kinds, "open");
+  const std::string kind =
+      r.read(key.only(no_roller ? std::vector<std::string>{"open", "outflow", "fixed"} : key.words));
   outflow = kind == "outflow";
   if (kind == "roller") return static_cast<unsigned char>(1 << axis);
   return static_cast<unsigned char>(kind == "fixed" ? (1 << dimension) - 1 : 0);
@@ -167,13 +160,25 @@ unsigned char read_face(TableReader& r, const std::string& key, size_t axis, int
 
 }  // namespace
 
+const FaceKey& FaceKeys::face(const GridSpec& grid, size_t axis, size_t side) const {
+  if (grid.polar && axis == 0) return side == 0 ? r_min : r_max;
+  if (grid.polar && axis == 1) return side == 0 ? theta_min : theta_max;
+  if (axis == 0) return side == 0 ? x_min : x_max;
+  if (axis == 1) return side == 0 ? y_min : y_max;
+  return side == 0 ? z_min : z_max;
+}
+
+KeyList FaceKeys::others(const GridSpec& grid, int dimension) const {
+  KeyList left = keys();
+  for (size_t axis = 0; axis < static_cast<size_t>(dimension); ++axis)
+    for (const size_t side : {0, 1}) left.erase(std::find(left.begin(), left.end(), &face(grid, axis, side)));
+  return left;
+}
+
 GridSpec read_grid(TableReader r, int dimension) {
-  std::vector<std::string> keys = {"lower", "upper", "spacing"};
-  keys.insert(keys.end(), axis_names.begin(), axis_names.begin() + dimension);
-  keys.emplace_back("polar");
-  r.allow_only(keys);
-  const bool rectilinear = r.has("x") || r.has("y") || r.has("z"), polar = r.has("polar");
-  const bool uniform = r.has("lower") || r.has("upper") || r.has("spacing");
+  const auto& keys = grid_keys;
+  const bool rectilinear = r.has(keys.x) || r.has(keys.y) || r.has(keys.z), polar = r.has(keys.polar);
+  const bool uniform = r.has(keys.lower) || r.has(keys.upper) || r.has(keys.spacing);
   if (int(rectilinear) + int(polar) + int(uniform) > 1) {
     const auto first = r.source().begin();
     r.fail(first->second, std::string(first->first.str()),
@@ -182,7 +187,10 @@ GridSpec read_grid(TableReader r, int dimension) {
   GridSpec grid = polar         ? read_polar(r, dimension)
                   : rectilinear ? read_rectilinear(r, dimension)
                                 : read_uniform(r, dimension);
-  refuse_coarse_coordinates(r, polar ? "polar" : rectilinear ? "x" : "lower", grid, dimension);
+  const Key& place = polar         ? static_cast<const Key&>(keys.polar)
+                     : rectilinear ? static_cast<const Key&>(keys.x)
+                                   : keys.lower;
+  refuse_coarse_coordinates(r, place, grid, dimension);
   r.finish();
   return grid;
 }
@@ -191,8 +199,8 @@ FaceSpec read_faces(TableReader r, int dimension, const GridSpec& grid) {
   FaceSpec faces;
   for (size_t axis = 0; axis < static_cast<size_t>(dimension); ++axis)
     for (size_t side = 0; side < 2; ++side)
-      faces.fixed[axis][side] = read_face(r, grid.axis_name(axis) + (side == 0 ? "_min" : "_max"), axis,
-                                          dimension, grid.polar, faces.outflow[axis][side]);
+      faces.fixed[axis][side] = read_face(r, face_keys.face(grid, axis, side), axis, dimension, grid.polar,
+                                          faces.outflow[axis][side]);
   r.finish();
   return faces;
 }

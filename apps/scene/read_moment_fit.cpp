@@ -22,11 +22,10 @@ std::string refusal(const Scene& scene) {
 
 }  // namespace
 
-void read_moment_fit(TableReader& method, Scene& scene) {
-  scene.method.moment_fit = method.boolean("moment_fit", false);
+void read_moment_fit(TableReader& method, const BooleanKey& key, Scene& scene) {
+  scene.method.moment_fit = method.read(key);
   if (!scene.method.moment_fit) return;
-  if (const auto reason = refusal(scene); !reason.empty())
-    method.fail(*method.source().get("moment_fit"), "moment_fit", reason);
+  if (const auto reason = refusal(scene); !reason.empty()) method.fail(key, reason);
 }
 
 }  // namespace vsb::app

@@ -9,6 +9,6 @@
 namespace vsb::app {
 
 /// Refuses the fit where it has nothing to do.
-void read_moment_fit(TableReader& method, Scene& scene);
+void read_moment_fit(TableReader& method, const BooleanKey& key, Scene& scene);
 
 }  // namespace vsb::app

@@ -36,49 +36,40 @@ std::optional<double> particle_spacing(const Scene& scene) {
 }
 
 HoleSpec read_hole(TableReader r, const Scene& scene) {
-  const auto d = static_cast<size_t>(scene.dimension);
+  const auto& keys = hole_keys;
   HoleSpec hole;
-  std::vector<std::string> keys = {"center", "radius", "row"};
-  if (d == 3) keys.emplace_back("axis");
-  r.allow_only(keys);
-  const auto center = r.numbers("center", d, Range::any(), {}, "m");
+  const auto center = r.read(keys.center.of(static_cast<size_t>(scene.dimension)));
   std::copy(center.begin(), center.end(), hole.center.begin());
-  if (d == 3) hole.axis = r.choice("axis", {"x", "y", "z"}, "z")[0] - 'x';
-  hole.radius = r.number("radius", Range::positive(), {}, "m, at the start");
-  hole.row = r.number("row", Range::positive(), particle_spacing(scene), "m, between rows of particles");
+  if (scene.dimension == 3) hole.axis = r.read(keys.axis)[0] - 'x';
+  hole.radius = r.read(keys.radius);
+  hole.row = r.read(keys.row, particle_spacing(scene));
   r.finish();
   return hole;
 }
 
 }  // namespace
 
-std::optional<RemovalSpec> read_removal(TableReader& document, const Scene& scene) {
-  if (!document.has("removal")) return {};
-  TableReader r = document.table("removal");
-  r.allow_only(
-      {"measure", "threshold", "remap", "next", "damping", "max_stages", "settled", "collapse", "hole"});
-  if (const auto reason = obstacle(scene); !reason.empty())
-    document.fail(*document.source().get("removal"), "removal", reason);
+std::optional<RemovalSpec> read_removal(TableReader& document, const SubtableKey& key, const Scene& scene) {
+  const auto& keys = removal_keys;
+  if (!document.has(key)) return {};
+  TableReader r = document.table(key);
+  if (const auto reason = obstacle(scene); !reason.empty()) document.fail(key, reason);
   RemovalSpec removal;
-  r.choice("measure", {"equivalent_plastic_strain"}, "equivalent_plastic_strain");
-  removal.threshold = r.number("threshold", Range::positive(), {}, "particles beyond it are removed");
-  removal.remap = r.boolean("remap", true);
-  removal.reset = r.choice("next", {"reset", "continue"}, "reset") == "reset";
+  r.read(keys.measure);
+  removal.threshold = r.read(keys.threshold);
+  removal.remap = r.read(keys.remap);
+  removal.reset = r.read<bool>(keys.next);
   if (!removal.reset)
-    removal.damping = r.number("damping", {0, 1, false, true}, 0.5, "of the stages after the first");
-  else if (r.has("damping"))
-    r.fail(*r.source().get("damping"), "damping",
-           "is for next = \"continue\"; with \"reset\" all stages have method.damping");
-  removal.max_stages = static_cast<int>(r.integer("max_stages", 1, 1000, 10));
-  removal.settled =
-      r.integer("settled", 0, 1'000'000'000'000LL, 0,
-                "steps under constant loads without another particle beyond the threshold after "
-                "which a stage is at its end, too; 0: when it is static alone");
-  removal.collapse = r.number("collapse", {0, 1, true, false}, 0.9,
-                              "share of the particles beyond the threshold that ends the run");
-  if (r.has("hole")) {
-    if (scene.dimension == 1) r.fail(*r.source().get("hole"), "hole", "is for dimension 2 and 3");
-    removal.hole = read_hole(r.table("hole"), scene);
+    removal.damping = r.read(keys.damping, 0.5);
+  else if (r.has(keys.damping))
+    r.fail(keys.damping, "is for next = \"continue\"; with \"reset\" all stages have method.damping");
+  removal.max_stages = static_cast<int>(r.read(keys.max_stages));
+  removal.settled = r.read(keys.settled);
+  removal.collapse = r.read(keys.collapse);
+  if (r.has(keys.hole)) {
+    if (scene.dimension == 1) r.fail(keys.hole, "is for dimension 2 and 3");
+    const KeyList axis = {&hole_keys.axis};
+    removal.hole = read_hole(r.table(keys.hole, scene.dimension == 3 ? KeyList() : axis), scene);
   }
   r.finish();
   return removal;

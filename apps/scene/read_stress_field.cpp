@@ -2,26 +2,20 @@
 #include "scene/read_stress_field.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "scene/read_affine.hpp"
-
 namespace vsb::app {
 
-const std::vector<std::string> stress_field_keys = {
-    "pressure", "stress", "affine", "hydrostatic", "radial_blend", "planar_blend", "exact_ellipse"};
-const std::vector<std::string> ellipse_keys = {"semi_major", "semi_minor", "pressure", "far_stress",
-                                               "far_ratio"};
-
-EllipseSpec read_ellipse(TableReader& r) {
+EllipseSpec read_ellipse(TableReader& r, const EllipseKeys& keys) {
   EllipseSpec e{};
-  e.semi_major = r.number("semi_major", Range::positive(), {}, "m, along x");
-  e.semi_minor = r.number("semi_minor", Range::positive(), {}, "m");
-  e.pressure = r.number("pressure", Range::positive(), {}, "Pa in the hole, positive in compression");
-  e.far_stress = r.number("far_stress", Range::any(), {}, "Pa, -sigma_yy far away");
-  e.far_ratio = r.number("far_ratio", Range::any(), {}, "K = sigma_xx / sigma_yy far away");
+  e.semi_major = r.read(keys.semi_major);
+  e.semi_minor = r.read(keys.semi_minor);
+  e.pressure = r.read(keys.pressure);
+  e.far_stress = r.read(keys.far_stress);
+  e.far_ratio = r.read(keys.far_ratio);
   return e;
 }
 
@@ -33,18 +27,20 @@ Point point_of(const std::vector<double>& values) {
   return p;
 }
 
-/// A uniform stress: a pressure, or six components.
-Stress6 read_stress(TableReader& r, const std::string& others = "") {
+/// A uniform stress: a pressure, or six components. `others`: what else the table may have in their place.
+Stress6 read_stress(TableReader& r, const StressKeys& keys, const std::vector<std::string>& others = {}) {
   Stress6 stress{};
-  if (r.has("pressure") && r.has("stress"))
-    r.fail(*r.source().get("stress"), "stress", "give one of pressure, stress");
-  if (r.has("stress")) {
-    const auto s = r.numbers("stress", 6, Range::any(), {},
-                             "Pa, virtual stress, tension positive: xx yy zz xy yz xz; or pressure" + others);
+  if (r.has(keys.pressure) && r.has(keys.stress)) r.fail(keys.stress, "give one of pressure, stress");
+  const auto told = [&](const auto& key) {
+    if (others.empty()) return key;
+    return remarked(
+        key, fmt::format("or {}, or {}", fmt::join(others.begin(), others.end() - 1, ", "), others.back()));
+  };
+  if (r.has(keys.stress)) {
+    const auto s = r.read(told(keys.stress));
     std::copy(s.begin(), s.end(), stress.begin());
   } else {
-    const double p = r.number("pressure", Range::any(), {},
-                              "Pa, positive in compression; or stress (xx yy zz xy yz xz)" + others);
+    const double p = r.read(told(keys.pressure));
     stress = {-p, -p, -p, 0, 0, 0};
   }
   return stress;
@@ -63,100 +59,104 @@ double particle_spacing(const Scene& scene, size_t axis) {
 
 HydrostaticSpec read_hydrostatic(TableReader r, const Scene& scene) {
   const auto d = static_cast<size_t>(scene.dimension);
+  const auto& keys = hydrostatic_keys;
   HydrostaticSpec h{};
-  r.allow_only({"unit_weight", "level", "up", "width"});
-  h.unit_weight = r.number("unit_weight", Range::positive(), {}, "N/m^3, of the fluid");
-  h.level = r.number("level", Range::any(), {}, "m, of the free surface along 'up'");
+  h.unit_weight = r.read(keys.unit_weight);
+  h.level = r.read(keys.level);
   std::vector<double> up(d, 0.0);
   up.back() = 1;
-  up = r.numbers("up", d, Range::any(), up, "direction");
+  up = r.read(keys.up.of(d), up);
   double length = 0;
   size_t steepest = 0;
   for (size_t i = 0; i < d; ++i) {
     length = std::hypot(length, up[i]);
     if (std::abs(up[i]) > std::abs(up[steepest])) steepest = i;
   }
-  if (!(length > 0)) r.fail(*r.source().get("up"), "up", "the direction must not be zero");
+  if (!(length > 0)) r.fail(keys.up, "the direction must not be zero");
   for (size_t i = 0; i < d; ++i) h.up[i] = up[i] / length;
-  h.width = r.number("width", Range::at_least(0), particle_spacing(scene, steepest),
-                     "m, over which the kink at the free surface is averaged: the particles' spacing");
+  h.width = r.read(keys.width, particle_spacing(scene, steepest));
   r.finish();
   return h;
 }
 
+/// One end of a blend: its place, and the stress there.
+template <class Keys, class Place>
+void read_blend_end(TableReader& r, const Key& key, const Keys& keys, const char* place,
+                    const Place& read_place, Stress6& stress) {
+  if (!r.has(key)) r.missing(key, fmt::format("a table with {}, and pressure or stress", place));
+  TableReader t = r.table(key);
+  read_place(t, keys);
+  stress = read_stress(t, keys.uniform);
+  t.finish();
+}
+
 RadialBlendSpec read_radial_blend(TableReader r, const Scene& scene) {
+  const auto& keys = radial_blend_keys;
   RadialBlendSpec b{};
-  std::vector<std::string> keys = {"center", "inner", "outer"};
-  if (scene.dimension == 3) keys.emplace_back("axis");
-  r.allow_only(keys);
-  b.center = point_of(r.numbers("center", static_cast<size_t>(scene.dimension), Range::any(), {}, "m"));
+  b.center = point_of(r.read(keys.center.of(static_cast<size_t>(scene.dimension))));
   b.axis = -1;
   if (scene.dimension == 3) {
-    const std::string axis = r.choice("axis", {"none", "x", "y", "z"});
+    const std::string axis = r.read(keys.axis);
     b.axis = axis == "none" ? -1 : axis[0] - 'x';
   }
-  const auto side = [&](const char* key, double& radius, const Range& range, Stress6& stress) {
-    if (!r.has(key)) r.missing(key, "a table with radius, and pressure or stress");
-    TableReader t = r.table(key);
-    t.allow_only({"radius", "pressure", "stress"});
-    radius = t.number("radius", range, {}, "m");
-    stress = read_stress(t);
-    t.finish();
-  };
-  side("inner", b.inner_radius, Range::at_least(0), b.inner);
-  side("outer", b.outer_radius, {b.inner_radius, Range::any().max, true, false}, b.outer);
+  read_blend_end(
+      r, keys.inner, blend_inner_keys, "radius",
+      [&](TableReader& t, const auto& of) { b.inner_radius = t.read(of.radius); }, b.inner);
+  read_blend_end(
+      r, keys.outer, blend_outer_keys, "radius",
+      [&](TableReader& t, const auto& of) {
+        b.outer_radius = t.read(of.radius.within(Range::above(b.inner_radius)));
+      },
+      b.outer);
   r.finish();
   return b;
 }
 
 PlanarBlendSpec read_planar_blend(TableReader r, const Scene& scene) {
+  const auto& keys = planar_blend_keys;
   PlanarBlendSpec b{};
-  r.allow_only({"start", "end"});
-  const auto side = [&](const char* key, Point& point, Stress6& stress) {
-    if (!r.has(key)) r.missing(key, "a table with point, and pressure or stress");
-    TableReader t = r.table(key);
-    t.allow_only({"point", "pressure", "stress"});
-    point = point_of(t.numbers("point", static_cast<size_t>(scene.dimension), Range::any(), {},
-                               "m; the planes are normal to the line between the two points"));
-    stress = read_stress(t);
-    t.finish();
+  const auto point = [&](Point& to) {
+    return [&](TableReader& t, const auto& of) {
+      to = point_of(t.read(of.point.of(static_cast<size_t>(scene.dimension))));
+    };
   };
-  side("start", b.start, b.at_start);
-  side("end", b.end, b.at_end);
-  if (b.start == b.end) r.fail(*r.source().get("end"), "end", "its point must not be that of 'start'");
+  read_blend_end(r, keys.start, blend_start_keys, "point", point(b.start), b.at_start);
+  read_blend_end(r, keys.end, blend_end_keys, "point", point(b.end), b.at_end);
+  if (b.start == b.end) r.fail(keys.end, "its point must not be that of 'start'");
   r.finish();
   return b;
 }
 
 }  // namespace
 
-StressFieldSpec read_stress_field(TableReader& r, const Scene& scene) {
-  std::vector<std::string> given;
-  std::copy_if(stress_field_keys.begin(), stress_field_keys.end(), std::back_inserter(given),
-               [&](const auto& key) { return r.has(key); });
+StressFieldSpec read_stress_field(TableReader& r, const StressFieldKeys& keys, const Scene& scene) {
+  const auto all = keys.all();
+  const auto names = names_of(all);
+  KeyList given;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(given),
+               [&](const Key* key) { return r.has(*key); });
   if (given.size() > 1)
-    r.fail(*r.source().get(given[1]), given[1],
-           fmt::format("beside '{}': give one of {}", given[0], fmt::join(stress_field_keys, ", ")));
+    r.fail(*given[1], fmt::format("beside '{}': give one of {}", given[0]->name, fmt::join(names, ", ")));
   if (given.empty())
-    r.missing("pressure",
-              fmt::format("a number in Pa; or one of {}",
-                          fmt::join(stress_field_keys.begin() + 1, stress_field_keys.end(), ", ")));
-  if (r.has("affine"))
-    return read_affine_table<6>(r.table("affine"), 6, scene.dimension,
-                                "Pa, tension positive: xx yy zz xy yz xz");
-  if (r.has("hydrostatic")) return read_hydrostatic(r.table("hydrostatic"), scene);
-  if (r.has("radial_blend")) return read_radial_blend(r.table("radial_blend"), scene);
-  if (r.has("planar_blend")) return read_planar_blend(r.table("planar_blend"), scene);
-  if (r.has("exact_ellipse")) {
-    if (scene.dimension != 2)
-      r.fail(*r.source().get("exact_ellipse"), "exact_ellipse", "is a field of plane strain, dimension = 2");
-    TableReader e = r.table("exact_ellipse");
-    e.allow_only(ellipse_keys);
-    const auto ellipse = read_ellipse(e);
+    r.missing(keys.uniform.pressure,
+              fmt::format("a number in Pa; or one of {}", fmt::join(names.begin() + 1, names.end(), ", ")));
+  if (r.has(keys.affine))
+    return read_affine_table<6>(r.table(keys.affine, affine_stress_keys.beyond(scene.dimension)),
+                                affine_stress_keys, 6, scene.dimension);
+  if (r.has(keys.hydrostatic)) return read_hydrostatic(r.table(keys.hydrostatic), scene);
+  if (r.has(keys.radial_blend)) {
+    const KeyList axis = {&radial_blend_keys.axis};
+    return read_radial_blend(r.table(keys.radial_blend, scene.dimension == 3 ? KeyList() : axis), scene);
+  }
+  if (r.has(keys.planar_blend)) return read_planar_blend(r.table(keys.planar_blend), scene);
+  if (r.has(keys.exact_ellipse)) {
+    if (scene.dimension != 2) r.fail(keys.exact_ellipse, "is a field of plane strain, dimension = 2");
+    TableReader e = r.table(keys.exact_ellipse);
+    const auto ellipse = read_ellipse(e, exact_ellipse_keys.ellipse);
     e.finish();
     return ellipse;
   }
-  return read_stress(r, ", or affine, hydrostatic, radial_blend, planar_blend, or exact_ellipse");
+  return read_stress(r, keys.uniform, {names.begin() + 2, names.end()});
 }
 
 double largest_stress(const StressFieldSpec& field, const Point& lower, const Point& upper) {

@@ -21,13 +21,11 @@ bool may_lock(const BodySpec& body) {
   return body.material.poisson_ratio >= locking_poisson_ratio;
 }
 
-void read_volumetric(TableReader& method, Scene& scene) {
+void read_volumetric(TableReader& method, const ChoiceKeyOf<bool>& key, Scene& scene) {
   const auto reason = refusal(scene);
   const bool preset = reason.empty() && std::any_of(scene.bodies.begin(), scene.bodies.end(), may_lock);
-  scene.method.averaged =
-      method.choice("volumetric", {"full", "averaged"}, preset ? "averaged" : "full") == "averaged";
-  if (scene.method.averaged && !reason.empty())
-    method.fail(*method.source().get("volumetric"), "volumetric", reason);
+  scene.method.averaged = method.read<bool>(key, preset);
+  if (scene.method.averaged && !reason.empty()) method.fail(key, reason);
 }
 
 }  // namespace vsb::app

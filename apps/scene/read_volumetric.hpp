@@ -14,7 +14,8 @@ constexpr double locking_poisson_ratio = 0.4;
 
 bool may_lock(const BodySpec& body);
 
-/// A scene that does not say averages where one of its bodies may lock.
-void read_volumetric(TableReader& method, Scene& scene);
+/// The key stands for whether particles strain by a mean. A scene that does not say averages where one of its
+/// bodies may lock.
+void read_volumetric(TableReader& method, const ChoiceKeyOf<bool>& key, Scene& scene);
 
 }  // namespace vsb::app

@@ -13,13 +13,6 @@ namespace vsb::app {
 
 namespace {
 
-std::string number_text(double x) {
-  if (std::isnan(x)) return "nan";
-  if (std::isinf(x)) return x > 0 ? "inf" : "-inf";
-  const std::string s = fmt::format("{}", x);
-  return s.find_first_of(".e") == std::string::npos ? s + ".0" : s;
-}
-
 bool is_bare(const std::string& key) {
   return !key.empty() && std::all_of(key.begin(), key.end(),
                                      [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });
@@ -77,24 +70,16 @@ std::string quoted(const std::string& text) {
   return out.str();
 }
 
+bool is_similar(const std::string& word, const std::string& known) {
+  return edit_distance(word, known) <= std::max<size_t>(2, word.size() / 3);
+}
+
 std::string did_you_mean(const std::string& key, const std::vector<std::string>& known) {
   const auto nearest = std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
     return edit_distance(key, a) < edit_distance(key, b);
   });
-  if (nearest == known.end() || edit_distance(key, *nearest) > std::max<size_t>(2, key.size() / 3)) return "";
+  if (nearest == known.end() || !is_similar(key, *nearest)) return "";
   return fmt::format("; did you mean '{}'?", *nearest);
-}
-
-std::string Range::text() const {
-  std::vector<std::string> parts;
-  if (std::isfinite(min)) parts.push_back(fmt::format("{} {}", min_open ? ">" : ">=", min));
-  if (std::isfinite(max)) parts.push_back(fmt::format("{} {}", max_open ? "<" : "<=", max));
-  return fmt::format("{}", fmt::join(parts, " and "));
-}
-
-std::string Range::of(const std::string& noun) const {
-  const std::string limits = text();
-  return limits.empty() ? "finite " + noun : noun + " " + limits;
 }
 
 std::string location(const toml::node& node) {
@@ -122,14 +107,19 @@ std::string inline_toml(const toml::node& node) {
   return out.str();
 }
 
+/// Comments of longer values stand behind these, and not in line with the others.
+constexpr size_t widest_aligned = 60;
+
 std::string ResolvedTable::toml(const std::string& prefix) const {
   std::string out;
+  const auto length = [](const Value& v) { return v.key.size() + v.text.size(); };
   size_t width = 0;
-  for (const auto& v : values) width = std::max(width, v.comment.empty() ? 0 : v.key.size() + v.text.size());
+  for (const auto& v : values)
+    if (!v.comment.empty() && length(v) <= widest_aligned) width = std::max(width, length(v));
   for (const auto& v : values) {
     out += fmt::format("{} = {}", v.key, v.text);
     if (!v.comment.empty())
-      out += fmt::format("{:{}}  # {}", "", width - v.key.size() - v.text.size(), v.comment);
+      out += fmt::format("{:{}}  # {}", "", width > length(v) ? width - length(v) : 0, v.comment);
     out += "\n";
   }
   for (const auto& child : children) {
@@ -140,47 +130,60 @@ std::string ResolvedTable::toml(const std::string& prefix) const {
   return out;
 }
 
-TableReader::TableReader(const toml::table& table, std::string path, ResolvedTable& resolved)
-    : table_(&table), place_(&table), path_(std::move(path)), resolved_(&resolved) {}
+TableReader::TableReader(const toml::table& table, std::string path, ResolvedTable& resolved,
+                         const KeyTable& keys, const KeyList& left_out)
+    : table_(&table), place_(&table), path_(std::move(path)), resolved_(&resolved), keys_(&keys) {
+  if (keys.is_open()) return;
+  KeyList allowed;
+  std::copy_if(keys.keys().begin(), keys.keys().end(), std::back_inserter(allowed), [&](const Key* key) {
+    return std::find(left_out.begin(), left_out.end(), key) == left_out.end();
+  });
+  const auto names = names_of(allowed);
+  for (const auto& [key, value] : *table_)
+    if (std::find(names.begin(), names.end(), std::string(key.str())) == names.end())
+      unknown(key, value, names);
+}
 
 std::string TableReader::name(const std::string& key) const {
   return path_.empty() ? key : path_ + "." + key;
 }
 
-bool TableReader::has(const std::string& key) const {
-  return table_->contains(key);
+const toml::node* TableReader::written(const Key& key) const {
+  if (key.table != keys_)
+    throw std::logic_error(fmt::format("the key {} is asked of the table {}", key.name, path_));
+  return table_->get(key.name);
 }
 
-void TableReader::allow_only(std::vector<std::string> keys) {
-  for (const auto& [key, value] : *table_)
-    if (std::find(keys.begin(), keys.end(), std::string(key.str())) == keys.end()) unknown(key, value, keys);
-  allowed_ = std::move(keys);
-}
-
-const toml::node* TableReader::find(const std::string& key) {
-  if (!allowed_.empty() && std::find(allowed_.begin(), allowed_.end(), key) == allowed_.end())
-    throw std::logic_error(fmt::format("the key {} is read but not in allow_only", name(key)));
-  known_.push_back(key);
-  return table_->get(key);
+const toml::node* TableReader::find(const Key& key) {
+  const auto* found = written(key);
+  known_.push_back(key.name);
+  return found;
 }
 
 void TableReader::fail(const toml::node& at, const std::string& key, const std::string& what) const {
   throw SceneError(fmt::format("{}: {} = {}: {}", location(at), name(key), described(at), what));
 }
 
-void TableReader::missing(const std::string& key, const std::string& what) const {
-  const auto& source = place_->source();
-  const bool written = static_cast<bool>(source.begin) || !source.path;
-  throw SceneError(
-      fmt::format("{}: {} is missing: {}", written ? location(*place_) : *source.path, name(key), what));
+void TableReader::fail(const Key& key, const std::string& what) const {
+  const auto* node = written(key);
+  if (!node) missing(key, what);
+  fail(*node, key.name, what);
 }
 
-void TableReader::record(const std::string& key, const std::string& text, const std::string& comment) {
-  resolved_->values.push_back({key_text(key), text, comment});
+void TableReader::missing(const Key& key, const std::string& what) const {
+  const auto& source = place_->source();
+  const bool in_file = static_cast<bool>(source.begin) || !source.path;
+  throw SceneError(
+      fmt::format("{}: {} is missing: {}", in_file ? location(*place_) : *source.path, name(key.name), what));
+}
+
+void TableReader::record(const Key& key, const std::string& text, const std::string& remark) {
+  resolved_->values.push_back({key_text(key.name), text, remark});
 }
 
 double checked_number(const TableReader& reader, const toml::node& node, const std::string& key,
                       const Range& range) {
+  if (!range.words.empty()) throw std::logic_error(fmt::format("the range of {} is not known", key));
   const auto value = node.value<double>();
   if (!(node.is_integer() || node.is_floating_point()) || !value)
     reader.fail(node, key, "must be a " + range.of("number"));
@@ -195,16 +198,14 @@ double checked_number(const TableReader& reader, const toml::node& node, const s
   return *value;
 }
 
-double TableReader::number(const std::string& key, const Range& range, std::optional<double> fallback,
-                           const std::string& unit) {
-  const auto* node = find(key);
-  if (!node && !fallback) missing(key, "a " + range.of("number"));
-  const double value = node ? checked_number(*this, *node, key, range) : *fallback;
-  record(key, number_text(value), unit);
-  return value;
+namespace {
+
+/// The default of the reading call, else that of the declaration.
+template <class Value>
+std::optional<Value> first_of(const std::optional<Value>& here, const std::optional<Value>& declared) {
+  return here ? here : declared;
 }
 
-namespace {
 long long checked_integer(const TableReader& reader, const toml::node& node, const std::string& key,
                           long long min, long long max) {
   const std::string allowed = max == std::numeric_limits<long long>::max()
@@ -215,51 +216,64 @@ long long checked_integer(const TableReader& reader, const toml::node& node, con
   if (value->get() < min || value->get() > max) reader.fail(node, key, "must be " + allowed);
   return value->get();
 }
+
 }  // namespace
 
-long long TableReader::integer(const std::string& key, long long min, long long max,
-                               std::optional<long long> fallback, const std::string& unit) {
+double TableReader::read(const NumberKey& key, std::optional<double> fallback) {
   const auto* node = find(key);
-  if (!node && !fallback) missing(key, fmt::format("an integer >= {}", min));
-  const long long value = node ? checked_integer(*this, *node, key, min, max) : *fallback;
-  record(key, fmt::format("{}", value), unit);
+  fallback = first_of(fallback, key.fallback);
+  if (!node && !fallback) missing(key, "a " + key.range.of("number"));
+  const double value = node ? checked_number(*this, *node, key.name, key.range) : *fallback;
+  record(key, number_text(value));
   return value;
 }
 
-bool TableReader::boolean(const std::string& key, std::optional<bool> fallback) {
+long long TableReader::read(const IntegerKey& key, std::optional<long long> fallback) {
   const auto* node = find(key);
+  fallback = first_of(fallback, key.fallback);
+  if (!node && !fallback) missing(key, fmt::format("an integer >= {}", key.min));
+  const long long value = node ? checked_integer(*this, *node, key.name, key.min, key.max) : *fallback;
+  record(key, fmt::format("{}", value));
+  return value;
+}
+
+bool TableReader::read(const BooleanKey& key, std::optional<bool> fallback) {
+  const auto* node = find(key);
+  fallback = first_of(fallback, key.fallback);
   if (!node && !fallback) missing(key, "true or false");
-  if (node && !node->is_boolean()) fail(*node, key, "must be true or false");
+  if (node && !node->is_boolean()) fail(key, "must be true or false");
   const bool value = node ? node->as_boolean()->get() : *fallback;
   record(key, value ? "true" : "false");
   return value;
 }
 
-std::string TableReader::text(const std::string& key, std::optional<std::string> fallback) {
+std::string TableReader::read(const TextKey& key, std::optional<std::string> fallback) {
   const auto* node = find(key);
+  fallback = first_of(fallback, key.fallback);
   if (!node && !fallback) missing(key, "a string");
-  if (node && !node->is_string()) fail(*node, key, "must be a string");
+  if (node && !node->is_string()) fail(key, "must be a string");
   const std::string value = node ? node->as_string()->get() : *fallback;
   record(key, quoted(value));
   return value;
 }
 
-std::string TableReader::choice(const std::string& key, const std::vector<std::string>& allowed,
-                                std::optional<std::string> fallback) {
+std::string TableReader::read(const ChoiceKey& key, std::optional<std::string> fallback) {
   const auto* node = find(key);
-  const std::string one_of = fmt::format("one of '{}'", fmt::join(allowed, "', '"));
+  const std::string one_of = fmt::format("one of '{}'", fmt::join(key.words, "', '"));
+  fallback = first_of(fallback, key.fallback);
   if (!node && !fallback) missing(key, one_of);
-  if (node && !node->is_string()) fail(*node, key, "must be " + one_of);
+  if (node && !node->is_string()) fail(key, "must be " + one_of);
   const std::string value = node ? node->as_string()->get() : *fallback;
-  if (std::find(allowed.begin(), allowed.end(), value) == allowed.end())
-    fail(*node, key, "must be " + one_of + did_you_mean(value, allowed));
-  record(key, quoted(value), allowed.size() > 1 ? fmt::format("one of {}", fmt::join(allowed, ", ")) : "");
+  if (std::find(key.words.begin(), key.words.end(), value) == key.words.end())
+    fail(key, "must be " + one_of + did_you_mean(value, key.words));
+  const std::string choices =
+      key.words.size() > 1 ? fmt::format("one of {}; ", fmt::join(key.words, ", ")) : "";
+  record(key, quoted(value), choices + key.remark());
   return value;
 }
 
-std::vector<double> TableReader::numbers(const std::string& key, size_t count, const Range& range,
-                                         std::optional<std::vector<double>> fallback,
-                                         const std::string& unit) {
+std::vector<double> TableReader::numbers(const Key& key, size_t count, const Range& range,
+                                         const std::optional<std::vector<double>>& fallback) {
   const auto* node = find(key);
   const std::string what =
       fmt::format("an array of {} {}", count, range.of(count == 1 ? "number" : "numbers"));
@@ -267,58 +281,65 @@ std::vector<double> TableReader::numbers(const std::string& key, size_t count, c
   std::vector<double> values;
   if (node) {
     const auto* array = node->as_array();
-    if (!array || array->size() != count) fail(*node, key, "must be " + what);
+    if (!array || array->size() != count) fail(key, "must be " + what);
     for (size_t i = 0; i < count; ++i)
-      values.push_back(checked_number(*this, *array->get(i), fmt::format("{}[{}]", key, i), range));
+      values.push_back(checked_number(*this, *array->get(i), fmt::format("{}[{}]", key.name, i), range));
   } else {
     values = *fallback;
   }
   std::vector<std::string> parts;
   for (const double x : values) parts.push_back(number_text(x));
-  record(key, fmt::format("[{}]", fmt::join(parts, ", ")), unit);
+  record(key, fmt::format("[{}]", fmt::join(parts, ", ")));
   return values;
 }
 
-std::vector<double> TableReader::increasing_numbers(const std::string& key, const std::string& unit) {
+std::vector<double> TableReader::read(const NumbersKey& key, std::optional<std::vector<double>> fallback) {
+  if (!fallback && key.fallback) fallback = std::vector<double>(key.count, *key.fallback);
+  return numbers(key, key.count, key.range, fallback);
+}
+
+std::vector<double> TableReader::read(const IncreasingKey& key) {
   const char* what = "an array of at least two numbers, each greater than the one before";
-  const auto* node = table_->get(key);
+  const auto* node = written(key);
   if (!node) missing(key, what);
   const auto* array = node->as_array();
-  if (!array || array->size() < 2) fail(*node, key, std::string("must be ") + what);
-  auto values = numbers(key, array->size(), Range::any(), {}, unit);
+  if (!array || array->size() < 2) fail(key, std::string("must be ") + what);
+  auto values = numbers(key, array->size(), Range::any(), {});
   for (size_t i = 1; i < values.size(); ++i)
     if (!(values[i] > values[i - 1]))
-      fail(*array->get(i), fmt::format("{}[{}]", key, i),
+      fail(*array->get(i), fmt::format("{}[{}]", key.name, i),
            fmt::format("must be > {}", number_text(values[i - 1])));
   return values;
 }
 
-std::vector<double> TableReader::number_or_numbers(const std::string& key, size_t count, const Range& range,
-                                                   std::optional<double> fallback, const std::string& unit) {
-  const auto* node = table_->get(key);
-  if (node && node->is_array()) return numbers(key, count, range, {}, unit);
-  return std::vector<double>(count, number(key, range, fallback, unit));
+std::vector<double> TableReader::read(const NumberOrNumbersKey& key, size_t count,
+                                      std::optional<double> fallback) {
+  const auto* node = written(key);
+  if (node && node->is_array()) return numbers(key, count, key.range, {});
+  return std::vector<double>(count, read(static_cast<const NumberKey&>(key), fallback));
 }
 
-std::vector<int> TableReader::integer_or_integers(const std::string& key, size_t count, int min, int max,
-                                                  std::optional<int> fallback, const std::string& unit) {
-  const auto* node = table_->get(key);
+std::vector<int> TableReader::read(const IntegerOrIntegersKey& key, size_t count,
+                                   std::optional<int> fallback) {
+  const auto* node = written(key);
   if (!node || !node->is_array())
-    return std::vector<int>(count, static_cast<int>(integer(key, min, max, fallback, unit)));
-  known_.push_back(key);
+    return std::vector<int>(
+        count, static_cast<int>(read(static_cast<const IntegerKey&>(key),
+                                     fallback ? std::optional<long long>(*fallback) : std::nullopt)));
+  find(key);
   const auto& array = *node->as_array();
   if (array.size() != count)
-    fail(*node, key,
-         fmt::format("must be an integer or an array of {} integers from {} to {}", count, min, max));
+    fail(key,
+         fmt::format("must be an integer or an array of {} integers from {} to {}", count, key.min, key.max));
   std::vector<int> values;
   for (size_t i = 0; i < count; ++i)
-    values.push_back(
-        static_cast<int>(checked_integer(*this, *array.get(i), fmt::format("{}[{}]", key, i), min, max)));
-  record(key, fmt::format("[{}]", fmt::join(values, ", ")), unit);
+    values.push_back(static_cast<int>(
+        checked_integer(*this, *array.get(i), fmt::format("{}[{}]", key.name, i), key.min, key.max)));
+  record(key, fmt::format("[{}]", fmt::join(values, ", ")));
   return values;
 }
 
-std::vector<std::string> TableReader::texts(const std::string& key, const std::vector<std::string>& allowed,
+std::vector<std::string> TableReader::words(const Key& key, const std::vector<std::string>& allowed,
                                             std::optional<std::vector<std::string>> fallback) {
   const auto* node = find(key);
   const std::string what = fmt::format("an array of '{}'", fmt::join(allowed, "', '"));
@@ -326,16 +347,16 @@ std::vector<std::string> TableReader::texts(const std::string& key, const std::v
   std::vector<std::string> values;
   if (node) {
     const auto* array = node->as_array();
-    if (!array) fail(*node, key, "must be " + what);
+    if (!array) fail(key, "must be " + what);
     for (const auto& item : *array) {
-      if (!item.is_string()) fail(item, key, "must be " + what);
+      if (!item.is_string()) fail(item, key.name, "must be " + what);
       const std::string value = item.as_string()->get();
       if (std::find(allowed.begin(), allowed.end(), value) == allowed.end())
-        fail(item, key,
+        fail(item, key.name,
              "must be one of '" + fmt::format("{}", fmt::join(allowed, "', '")) + "'" +
                  did_you_mean(value, allowed));
       if (std::find(values.begin(), values.end(), value) != values.end())
-        fail(item, key, "must not name anything twice");
+        fail(item, key.name, "must not name anything twice");
       values.push_back(value);
     }
   } else {
@@ -347,33 +368,36 @@ std::vector<std::string> TableReader::texts(const std::string& key, const std::v
   return values;
 }
 
-const toml::node* TableReader::node(const std::string& key) {
+const toml::node* TableReader::node(const Key& key) {
   const auto* found = find(key);
-  if (found) record(key, inline_toml(*found));
+  if (found) record(key, inline_toml(*found), "");
   return found;
 }
 
-TableReader TableReader::table(const std::string& key) {
+TableReader TableReader::table(const Key& key, const KeyList& left_out) {
   static const toml::table empty;
   const auto* node = find(key);
-  if (node && !node->is_table()) fail(*node, key, "must be a table");
-  resolved_->children.push_back({key_text(key), false, std::make_unique<ResolvedTable>()});
-  TableReader reader(node ? *node->as_table() : empty, name(key), *resolved_->children.back().table);
+  if (node && !node->is_table()) fail(key, "must be a table");
+  resolved_->children.push_back({key_text(key.name), false, std::make_unique<ResolvedTable>()});
+  TableReader reader(node ? *node->as_table() : empty, name(key.name), *resolved_->children.back().table,
+                     *key.inside, left_out);
   if (!node) reader.place_ = place_;
   return reader;
 }
 
-std::vector<TableReader> TableReader::tables(const std::string& key) {
+std::vector<TableReader> TableReader::tables(const SubtablesKey& key, const KeyList& left_out) {
   std::vector<TableReader> readers;
   const auto* node = find(key);
   if (!node) return readers;
   const auto* array = node->as_array();
-  if (!array) fail(*node, key, fmt::format("must be tables, each headed [[{}]]", name(key)));
+  const std::string what = fmt::format("must be tables, each headed [[{}]]", name(key.name));
+  if (!array) fail(key, what);
   for (size_t i = 0; i < array->size(); ++i) {
     const auto* table = array->get(i)->as_table();
-    if (!table) fail(*array->get(i), key, fmt::format("must be tables, each headed [[{}]]", name(key)));
-    resolved_->children.push_back({key_text(key), true, std::make_unique<ResolvedTable>()});
-    readers.emplace_back(*table, fmt::format("{}[{}]", name(key), i), *resolved_->children.back().table);
+    if (!table) fail(*array->get(i), key.name, what);
+    resolved_->children.push_back({key_text(key.name), true, std::make_unique<ResolvedTable>()});
+    readers.emplace_back(*table, fmt::format("{}[{}]", name(key.name), i), *resolved_->children.back().table,
+                         *key.inside, left_out);
   }
   return readers;
 }

@@ -15,6 +15,7 @@
 #include "report/summary.hpp"
 #include "scene/toml_reader.hpp"
 #include "study/random_body.hpp"
+#include "study/study_keys.hpp"
 
 namespace vsb::app {
 
@@ -31,49 +32,42 @@ struct Inherited {
   Solution solution = Solution::steps;
 };
 
-std::vector<std::string> read_set(TableReader& r) {
+std::vector<std::string> read_set(TableReader& r, const Key& key) {
   std::vector<std::string> set;
-  const auto* node = r.node("set");
+  const auto* node = r.node(key);
   if (!node) return set;
   const char* what = "must be an array of overrides such as \"time.kappa=0.1\"";
-  if (!node->is_array()) r.fail(*node, "set", what);
+  if (!node->is_array()) r.fail(key, what);
   for (const auto& item : *node->as_array()) {
-    if (!item.is_string()) r.fail(item, "set", what);
+    if (!item.is_string()) r.fail(item, key.name, what);
     set.push_back(item.as_string()->get());
   }
   return set;
 }
 
-const std::vector<std::string> inherited_keys = {"scene",         "source", "tolerance", "set",
-                                                 "expect_static", "static", "balance"};
-
-std::vector<std::string> with_inherited(std::vector<std::string> keys) {
-  keys.insert(keys.end(), inherited_keys.begin(), inherited_keys.end());
-  return keys;
-}
-
 /// static = true or balance = true; the innermost counts.
-Solution read_solution(TableReader& r, Solution outer) {
-  const bool is_static = r.boolean("static", outer == Solution::static_state);
-  const bool is_balance = r.boolean("balance", outer == Solution::balance);
-  if (is_static && is_balance && r.has("static") && r.has("balance"))
-    r.fail(*r.source().get("balance"), "balance", "give either static = true or balance = true, not both");
-  if (is_static && is_balance) return r.has("static") ? Solution::static_state : Solution::balance;
+Solution read_solution(TableReader& r, const InheritedKeys& keys, Solution outer) {
+  const bool is_static = r.read(keys.static_solution, outer == Solution::static_state);
+  const bool is_balance = r.read(keys.balance, outer == Solution::balance);
+  if (is_static && is_balance && r.has(keys.static_solution) && r.has(keys.balance))
+    r.fail(keys.balance, "give either static = true or balance = true, not both");
+  if (is_static && is_balance)
+    return r.has(keys.static_solution) ? Solution::static_state : Solution::balance;
   return is_static ? Solution::static_state : is_balance ? Solution::balance : Solution::steps;
 }
 
 /// Reads the keys that a table may change for everything inside it.
-Inherited read_inherited(TableReader& r, Inherited outer, const fs::path& folder) {
-  if (const auto* node = r.node("scene")) {
-    if (!node->is_string()) r.fail(*node, "scene", "must be the path of a scene file");
+Inherited read_inherited(TableReader& r, const InheritedKeys& keys, Inherited outer, const fs::path& folder) {
+  if (const auto* node = r.node(keys.scene)) {
+    if (!node->is_string()) r.fail(keys.scene, "must be the path of a scene file");
     outer.scene = (folder / node->as_string()->get()).lexically_normal().string();
-    if (!fs::exists(outer.scene)) r.fail(*node, "scene", fmt::format("there is no file {}", outer.scene));
+    if (!fs::exists(outer.scene)) r.fail(keys.scene, fmt::format("there is no file {}", outer.scene));
   }
-  outer.source = r.text("source", outer.source);
-  outer.expect_static = r.boolean("expect_static", outer.expect_static);
-  outer.solution = read_solution(r, outer.solution);
-  if (r.node("tolerance")) outer.tolerance = r.number("tolerance", Range::at_least(0));
-  const auto set = read_set(r);
+  outer.source = r.read(keys.source, outer.source);
+  outer.expect_static = r.read(keys.expect_static, outer.expect_static);
+  outer.solution = read_solution(r, keys, outer.solution);
+  if (r.has(keys.tolerance)) outer.tolerance = r.read(keys.tolerance);
+  const auto set = read_set(r, keys.set);
   outer.set.insert(outer.set.end(), set.begin(), set.end());
   return outer;
 }
@@ -86,35 +80,30 @@ void set_limits(Expectation& e, double value, double tolerance) {
 }
 
 /// A number, or a table with either value and tolerance, or lowest and/or highest.
-Expectation read_expectation(TableReader& parent, const std::string& key, const Inherited& inherited) {
+Expectation read_expectation(TableReader& parent, const ExpectationKey& key, const Inherited& inherited) {
+  const auto& keys = expectation_keys;
+  const char* zero = "a relative tolerance of zero means nothing; give lowest and highest";
   Expectation e;
   e.source = inherited.source;
-  const auto* node = parent.source().get(key);
-  if (!node->is_table()) {
-    const double value = parent.number(key, Range::any());
+  if (!parent.written(key)->is_table()) {
+    const double value = parent.read(key);
     if (!inherited.tolerance)
-      parent.fail(*node, key, "needs a tolerance: write tolerance = ... here, in the series or in the study");
-    if (value == 0 && *inherited.tolerance > 0)
-      parent.fail(*node, key, "a relative tolerance of zero means nothing; give lowest and highest");
+      parent.fail(key, "needs a tolerance: write tolerance = ... here, in the series or in the study");
+    if (value == 0 && *inherited.tolerance > 0) parent.fail(key, zero);
     set_limits(e, value, *inherited.tolerance);
     return e;
   }
   TableReader r = parent.table(key);
-  r.allow_only({"source", "value", "tolerance", "lowest", "highest"});
-  e.source = r.text("source", e.source);
-  const bool has_lowest = r.node("lowest"), has_highest = r.node("highest");
-  if (has_lowest || has_highest) {
-    for (const char* other : {"value", "tolerance"})
-      if (r.has(other))
-        r.fail(*r.source().get(other), other, "give either value and tolerance, or lowest and highest");
-    if (has_lowest) e.lowest = r.number("lowest", Range::any());
-    if (has_highest) e.highest = r.number("highest", Range::at_least(e.lowest));
+  e.source = r.read(keys.source, e.source);
+  if (r.has(keys.lowest) || r.has(keys.highest)) {
+    for (const Key* other : KeyList{&keys.value, &keys.tolerance})
+      if (r.has(*other)) r.fail(*other, "give either value and tolerance, or lowest and highest");
+    if (r.has(keys.lowest)) e.lowest = r.read(keys.lowest);
+    if (r.has(keys.highest)) e.highest = r.read(keys.highest.within(Range::at_least(e.lowest)));
   } else {
-    const double value = r.number("value", Range::any());
-    const double tolerance = r.number("tolerance", Range::at_least(0), inherited.tolerance);
-    if (value == 0 && tolerance > 0)
-      r.fail(*r.source().get("value"), "value",
-             "a relative tolerance of zero means nothing; give lowest and highest");
+    const double value = r.read(keys.value);
+    const double tolerance = r.read(keys.tolerance, inherited.tolerance);
+    if (value == 0 && tolerance > 0) r.fail(keys.value, zero);
     set_limits(e, value, tolerance);
   }
   r.finish();
@@ -148,24 +137,23 @@ class StudyReader {
   Study read() {
     const toml::table document = parse_scene_file(path_, {});
     ResolvedTable resolved;
-    TableReader r(document, "", resolved);
+    const auto& keys = study_keys;
+    TableReader r(document, "", resolved, keys);
     study_.name = fs::path(path_).stem().string();
-    r.allow_only(with_inherited(
-        {"title", "published_source", "rates", "axis", "series", "relation", "statistic", "chart", "reach"}));
-    study_.title = r.text("title");
-    study_.published_source = r.text("published_source", "published");
+    study_.title = r.read(keys.title);
+    study_.published_source = r.read(keys.published_source);
     read_axis(r);
-    study_.rates = r.boolean("rates", study_.axis.log);
+    study_.rates = r.read(keys.rates, study_.axis.log);
     if (study_.rates && !study_.axis.log)
-      r.fail(*r.source().get("rates"), "rates", "rates need a logarithmic axis (axis.log = true)");
-    const auto inherited = read_inherited(r, {}, folder());
-    auto series = r.tables("series");
-    if (series.empty()) r.missing("series", "at least one table [[series]]");
+      r.fail(keys.rates, "rates need a logarithmic axis (axis.log = true)");
+    const auto inherited = read_inherited(r, keys.inherited, {}, folder());
+    auto series = r.tables(keys.series);
+    if (series.empty()) r.missing(keys.series, "at least one table [[series]]");
     for (auto& table : series) read_series(table, inherited);
-    for (auto& table : r.tables("relation")) read_relation(table, inherited);
-    for (auto& table : r.tables("statistic")) read_statistic(table, inherited);
-    if (r.has("chart")) read_chart(r.table("chart"));
-    if (r.has("reach")) read_reach(r.table("reach"));
+    for (auto& table : r.tables(keys.relation)) read_relation(table, inherited);
+    for (auto& table : r.tables(keys.statistic)) read_statistic(table, inherited);
+    if (r.has(keys.chart)) read_chart(r.table(keys.chart));
+    if (r.has(keys.reach)) read_reach(r.table(keys.reach));
     r.finish();
     leave_out_fine_cases();
     refuse_without_figures();
@@ -176,34 +164,34 @@ class StudyReader {
   fs::path folder() const { return fs::path(path_).parent_path(); }
 
   void read_axis(TableReader& document) {
-    if (!document.has("axis")) document.missing("axis", "a table with name, and unit, log or labels");
-    TableReader r = document.table("axis");
-    r.allow_only({"name", "labels", "unit", "log"});
-    study_.axis.name = r.text("name");
-    study_.axis.labels = r.boolean("labels", false);
+    const auto& keys = axis_keys;
+    if (!document.has(study_keys.axis))
+      document.missing(study_keys.axis, "a table with name, and unit, log or labels");
+    TableReader r = document.table(study_keys.axis);
+    study_.axis.name = r.read(keys.name);
+    study_.axis.labels = r.read(keys.labels);
     if (!study_.axis.labels) {
-      study_.axis.unit = r.text("unit", "");
-      study_.axis.log = r.boolean("log", false);
+      study_.axis.unit = r.read(keys.unit);
+      study_.axis.log = r.read(keys.log);
     }
     r.finish();
   }
 
   void read_series(TableReader& r, const Inherited& study) {
+    const auto& keys = series_keys;
     StudySeries series;
-    const auto* name = r.source().get("name");
-    r.allow_only(with_inherited({"name", "sweep", "case", "random_bodies"}));
-    series.name = r.text("name");
-    if (slug(series.name).empty()) r.fail(*name, "name", "must have a letter or a digit");
+    series.name = r.read(keys.name);
+    if (slug(series.name).empty()) r.fail(keys.name, "must have a letter or a digit");
     for (const auto& other : study_.series)
       if (slug(other.name) == slug(series.name))
-        r.fail(*name, "name", "another series has this name, or one whose directories would be the same");
-    Inherited inherited = read_inherited(r, study, folder());
-    if (r.has("random_bodies")) {
+        r.fail(keys.name, "another series has this name, or one whose directories would be the same");
+    Inherited inherited = read_inherited(r, keys.inherited, study, folder());
+    if (r.has(keys.random_bodies)) {
       draw_cases(r, series, inherited);
     } else {
-      inherited.sweep = r.text("sweep", "");
-      auto cases = r.tables("case");
-      if (cases.empty()) r.missing("case", "at least one table [[series.case]], or random_bodies");
+      inherited.sweep = r.read(keys.sweep);
+      auto cases = r.tables(keys.cases);
+      if (cases.empty()) r.missing(keys.cases, "at least one table [[series.case]], or random_bodies");
       for (auto& table : cases) read_case(table, series, inherited);
     }
     r.finish();
@@ -212,30 +200,31 @@ class StudyReader {
 
   static RandomBodies read_random_bodies(TableReader r) {
     RandomBodies bodies;
-    r.allow_only({"count", "first_seed", "half_width"});
-    bodies.count = static_cast<int>(r.integer("count", 1, 10'000));
-    bodies.first_seed = r.integer("first_seed", 0, 1'000'000'000, 1);
-    bodies.half_width = r.number("half_width", Range::positive());
+    bodies.count = static_cast<int>(r.read(random_bodies_keys.count));
+    bodies.first_seed = r.read(random_bodies_keys.first_seed);
+    bodies.half_width = r.read(random_bodies_keys.half_width);
     r.finish();
     return bodies;
   }
 
   /// A case for each seed, which is its place on the axis.
   void draw_cases(TableReader& r, StudySeries& series, const Inherited& inherited) const {
-    const auto& at = *r.source().get("random_bodies");
-    for (const char* key : {"case", "sweep"})
-      if (r.has(key)) r.fail(*r.source().get(key), key, "give either cases or random_bodies, not both");
+    const auto& keys = series_keys;
+    const auto& at = *r.written(keys.random_bodies);
+    for (const Key* key : KeyList{&keys.cases, &keys.sweep})
+      if (r.has(*key)) r.fail(*key, "give either cases or random_bodies, not both");
     if (study_.axis.labels)
-      r.fail(at, "random_bodies", "are numbered by their seeds: the axis must not have labels");
-    if (inherited.scene.empty()) r.missing("scene", "the path of a scene file, here or in the study");
-    const auto bodies = read_random_bodies(r.table("random_bodies"));
+      r.fail(keys.random_bodies, "are numbered by their seeds: the axis must not have labels");
+    if (inherited.scene.empty())
+      r.missing(keys.inherited.scene, "the path of a scene file, here or in the study");
+    const auto bodies = read_random_bodies(r.table(keys.random_bodies));
     series.drawn = true;
     StudyCase c;
     c.expect_static = inherited.expect_static;
     c.solution = inherited.solution;
     read_case_scene(at, c, inherited);
     const Scene base = *c.scene;
-    if (const auto why = why_no_random_body(base); !why.empty()) r.fail(at, "random_bodies", why);
+    if (const auto why = why_no_random_body(base); !why.empty()) r.fail(keys.random_bodies, why);
     for (int k = 0; k < bodies.count; ++k) {
       const long long seed = bodies.first_seed + k;
       c.text = std::to_string(seed);
@@ -249,37 +238,41 @@ class StudyReader {
     }
   }
 
+  /// The key by which cases have their place on the axis.
+  const Key& place_key(const PlaceKeys& keys) const {
+    return study_.axis.labels ? static_cast<const Key&>(keys.label) : keys.axis;
+  }
+
   /// The case's place on the axis, written axis = number or label = "text".
-  const toml::node& read_place(TableReader& r, StudyCase& c, size_t label_count) const {
-    const std::string key = study_.axis.labels ? "label" : "axis";
-    const auto* node = r.source().get(key);
+  const toml::node& read_place(TableReader& r, const PlaceKeys& keys, StudyCase& c,
+                               size_t label_count) const {
     if (study_.axis.labels) {
-      c.text = r.text(key);
+      c.text = r.read(keys.label);
       c.axis = static_cast<double>(label_count);
-      if (slug(c.text).empty()) r.fail(*node, key, "must have a letter or a digit");
+      if (slug(c.text).empty()) r.fail(keys.label, "must have a letter or a digit");
     } else {
-      c.axis = r.number(key, study_.axis.log ? Range::positive() : Range::any());
-      c.text = inline_toml(*node);
+      c.axis = r.read(study_.axis.log ? keys.axis.within(Range::positive()) : keys.axis);
+      c.text = inline_toml(*r.written(keys.axis));
     }
-    return *node;
+    return *r.written(place_key(keys));
   }
 
   void read_case(TableReader& r, StudySeries& series, const Inherited& outer) {
+    const auto& keys = case_keys;
     StudyCase c;
-    r.allow_only(with_inherited({"axis", "label", "fine", "expect_failure", "expect", "published"}));
-    const auto& place = read_place(r, c, series.cases.size());
+    const auto& place = read_place(r, keys.place, c, series.cases.size());
     const char* sign = !study_.axis.labels && c.axis < 0 ? "minus-" : "";  // which slug leaves out
     c.directory = fmt::format("cases/{}_{}{}", slug(series.name), sign, slug(c.text));
     for (const auto& other : series.cases)
       if (other.directory == c.directory || (!study_.axis.labels && other.axis == c.axis))
-        r.fail(place, study_.axis.labels ? "label" : "axis", "the series has this case already");
-    c.fine = r.boolean("fine", false);
+        r.fail(place_key(keys.place), "the series has this case already");
+    c.fine = r.read(keys.fine);
     Inherited inherited = outer;
     if (!outer.sweep.empty()) inherited.set.push_back(outer.sweep + "=" + inline_toml(place));
-    inherited = read_inherited(r, inherited, folder());
+    inherited = read_inherited(r, keys.inherited, inherited, folder());
     if (inherited.scene.empty())
-      r.missing("scene", "the path of a scene file, here, in the series or in the study");
-    c.expected_failure = r.text("expect_failure", "");
+      r.missing(keys.inherited.scene, "the path of a scene file, here, in the series or in the study");
+    c.expected_failure = r.read(keys.expect_failure);
     c.expect_static = inherited.expect_static;
     c.solution = inherited.solution;
     read_case_scene(place, c, inherited);
@@ -299,99 +292,105 @@ class StudyReader {
     }
   }
 
-  static void read_figures(TableReader& r, StudyCase& c, const Inherited& inherited) {
-    for (const char* key : {"expect", "published"}) {
-      if (!r.node(key)) continue;
-      const bool expectations = std::string(key) == "expect";
-      if (expectations && !c.expected_failure.empty())
-        r.fail(*r.source().get(key), key, "a case that is expected to fail has no figures");
-      TableReader figures = r.table(key);
-      figures.refuse_empty("a table of figures, such as { e_rr = 0.02 }");
-      for (const auto& [name_key, value] : figures.source()) {
-        const std::string name(name_key.str());
-        if (c.scene) check_figure(figures, value, name, figure_names(*c.scene, c.solution));
-        if (expectations)
-          c.expect[name] = read_expectation(figures, name, inherited);
-        else
-          c.published[name] = figures.number(name, Range::any());
-      }
-      figures.finish();
+  /// The figures of the table under a key: read(table, name) takes each.
+  template <class Read>
+  static void read_figures_of(TableReader& r, const Key& key, const StudyCase& c, const Read& read) {
+    if (!r.has(key)) return;
+    TableReader figures = r.table(key);
+    figures.refuse_empty("a table of figures, such as { e_rr = 0.02 }");
+    for (const auto& [name_key, value] : figures.source()) {
+      const std::string name(name_key.str());
+      if (c.scene) check_figure(figures, value, name, figure_names(*c.scene, c.solution));
+      read(figures, name);
     }
+    figures.finish();
   }
 
-  size_t series_named(const TableReader& r, const toml::node& at, const std::string& name) const {
+  static void read_figures(TableReader& r, StudyCase& c, const Inherited& inherited) {
+    if (r.has(case_keys.expect) && !c.expected_failure.empty())
+      r.fail(case_keys.expect, "a case that is expected to fail has no figures");
+    read_figures_of(r, case_keys.expect, c, [&](TableReader& figures, const std::string& name) {
+      c.expect[name] = read_expectation(figures, called(expect_keys.figure, name), inherited);
+    });
+    read_figures_of(r, case_keys.published, c, [&](TableReader& figures, const std::string& name) {
+      c.published[name] = figures.read(called(published_figure_keys.figure, name));
+    });
+  }
+
+  size_t read_series_name(TableReader& r, const TextKey& key) const {
+    const auto name = r.read(key);
     for (size_t s = 0; s < study_.series.size(); ++s)
       if (study_.series[s].name == name) return s;
-    r.fail(at, "series", "there is no series of this name");
+    r.fail(key, "there is no series of this name");
   }
 
-  Relation::Place read_place_of(TableReader& relation, const std::string& key,
+  Relation::Place read_place_of(TableReader& relation, const SubtableKey& key,
                                 const std::string& figure) const {
+    const auto& keys = related_case_keys;
     if (!relation.has(key)) relation.missing(key, "a case: { series = ..., axis = ... (or label) }");
     TableReader r = relation.table(key);
     Relation::Place place;
-    r.allow_only({"series", "axis", "label"});
-    const auto* series = r.source().get("series");
-    place.series = series_named(r, *series, r.text("series"));
+    place.series = read_series_name(r, keys.series);
     StudyCase wanted;
-    const auto& at = read_place(r, wanted, 0);
+    read_place(r, keys.place, wanted, 0);
     r.finish();
     const auto& cases = study_.series[place.series].cases;
     const auto same = [&](const StudyCase& c) {
       return study_.axis.labels ? c.text == wanted.text : c.axis == wanted.axis;
     };
     place.index = static_cast<size_t>(std::find_if(cases.begin(), cases.end(), same) - cases.begin());
-    const std::string where = study_.axis.labels ? "label" : "axis";
-    if (place.index == cases.size()) r.fail(at, where, "the series has no such case");
-    if (!cases[place.index].expected_failure.empty()) r.fail(at, where, "this case is expected to fail");
+    const auto& where = place_key(keys.place);
+    if (place.index == cases.size()) r.fail(where, "the series has no such case");
+    if (!cases[place.index].expected_failure.empty()) r.fail(where, "this case is expected to fail");
     const auto& c = cases[place.index];
-    check_figure(relation, *relation.source().get("figure"), figure, figure_names(*c.scene, c.solution));
+    check_figure(relation, *relation.written(relation_keys.figure), figure,
+                 figure_names(*c.scene, c.solution));
     return place;
   }
 
   /// The expectation under the only one of three keys that is there; returns which.
-  static size_t read_one_of(TableReader& r, const std::array<const char*, 3>& kinds, Inherited inherited,
-                            Expectation& expectation) {
-    inherited.source = r.text("source", inherited.source);
+  static size_t read_one_of(TableReader& r, const std::array<const ExpectationKey*, 3>& kinds,
+                            const TextKey& source, Inherited inherited, Expectation& expectation) {
+    inherited.source = r.read(source, inherited.source);
     size_t which = 0, found = 0;
     for (size_t k = 0; k < kinds.size(); ++k) {
-      if (!r.node(kinds[k])) continue;
+      if (!r.has(*kinds[k])) continue;
       ++found;
       which = k;
-      expectation = read_expectation(r, kinds[k], inherited);
+      expectation = read_expectation(r, *kinds[k], inherited);
     }
     if (found != 1)
-      r.missing(kinds[0], fmt::format("exactly one of {}, {} and {}", kinds[0], kinds[1], kinds[2]));
+      r.missing(*kinds[0],
+                fmt::format("exactly one of {}, {} and {}", kinds[0]->name, kinds[1]->name, kinds[2]->name));
     return which;
   }
 
   void read_relation(TableReader& r, const Inherited& study) {
+    const auto& keys = relation_keys;
     Relation relation;
-    r.allow_only({"title", "figure", "first", "second", "source", "ratio", "difference", "rate"});
-    relation.title = r.text("title");
-    relation.figure = r.text("figure");
-    relation.first = read_place_of(r, "first", relation.figure);
-    relation.second = read_place_of(r, "second", relation.figure);
-    relation.kind = static_cast<Relation::Kind>(
-        read_one_of(r, {"ratio", "difference", "rate"}, study, relation.expectation));
+    relation.title = r.read(keys.title);
+    relation.figure = r.read(keys.figure);
+    relation.first = read_place_of(r, keys.first, relation.figure);
+    relation.second = read_place_of(r, keys.second, relation.figure);
+    relation.kind = static_cast<Relation::Kind>(read_one_of(r, {&keys.ratio, &keys.difference, &keys.rate},
+                                                            keys.source, study, relation.expectation));
     if (relation.kind == Relation::Kind::rate && !study_.axis.log)
-      r.fail(*r.source().get("rate"), "rate", "rates need a logarithmic axis (axis.log = true)");
+      r.fail(keys.rate, "rates need a logarithmic axis (axis.log = true)");
     r.finish();
     study_.relations.push_back(std::move(relation));
   }
 
   void read_statistic(TableReader& r, const Inherited& study) {
+    const auto& keys = statistic_keys;
     Statistic statistic;
-    r.allow_only({"title", "figure", "series", "source", "largest", "smallest", "median"});
-    statistic.title = r.text("title");
-    statistic.figure = r.text("figure");
-    const auto* at = r.source().get("series");
-    statistic.series = series_named(r, *at, r.text("series"));
+    statistic.title = r.read(keys.title);
+    statistic.figure = r.read(keys.figure);
+    statistic.series = read_series_name(r, keys.series);
     for (const auto& c : study_.series[statistic.series].cases)
       if (c.expected_failure.empty())
-        check_figure(r, *r.source().get("figure"), statistic.figure, figure_names(*c.scene, c.solution));
-    statistic.kind = static_cast<Statistic::Kind>(
-        read_one_of(r, {"largest", "smallest", "median"}, study, statistic.expectation));
+        check_figure(r, *r.written(keys.figure), statistic.figure, figure_names(*c.scene, c.solution));
+    statistic.kind = static_cast<Statistic::Kind>(read_one_of(
+        r, {&keys.largest, &keys.smallest, &keys.median}, keys.source, study, statistic.expectation));
     r.finish();
     study_.statistics.push_back(std::move(statistic));
   }
@@ -408,21 +407,19 @@ class StudyReader {
     return names;
   }
 
-  static std::vector<std::string> figures_of(TableReader& r, const std::vector<std::string>& known) {
-    auto figures = r.texts("figures", known);
-    if (figures.empty())
-      r.fail(*r.source().get("figures"), "figures",
-             fmt::format("must name a figure: one of {}", fmt::join(known, ", ")));
+  static std::vector<std::string> figures_of(TableReader& r, const WordsKey& key,
+                                             const std::vector<std::string>& known) {
+    auto figures = r.words(key, known);
+    if (figures.empty()) r.fail(key, fmt::format("must name a figure: one of {}", fmt::join(known, ", ")));
     return figures;
   }
 
   void read_chart(TableReader r) {
     const auto known = names_of_cases([](const StudyCase& c) { return figure_names(*c.scene, c.solution); });
     Chart chart;
-    r.allow_only({"figures", "distribution", "log"});
-    chart.figures = figures_of(r, known);
-    chart.distribution = r.boolean("distribution", false);
-    chart.log = r.boolean("log", true);
+    chart.figures = figures_of(r, chart_keys.figures, known);
+    chart.distribution = r.read(chart_keys.distribution);
+    chart.log = r.read(chart_keys.log);
     r.finish();
     study_.chart = chart;
   }
@@ -430,11 +427,11 @@ class StudyReader {
   void read_reach(TableReader r) {
     const auto known = names_of_cases([](const StudyCase& c) { return error_names(*c.scene); });
     Reach reach;
-    r.allow_only({"figures", "level"});
     if (known.empty())
-      r.missing("figures", "errors of a scene: no scene of this study is compared with an exact solution");
-    reach.figures = figures_of(r, known);
-    reach.level = r.number("level", Range::positive());
+      r.missing(reach_keys.figures,
+                "errors of a scene: no scene of this study is compared with an exact solution");
+    reach.figures = figures_of(r, reach_keys.figures, known);
+    reach.level = r.read(reach_keys.level);
     r.finish();
     study_.reach = reach;
   }

@@ -90,7 +90,7 @@ class Uniform(LatticeTest):
                               ("lattice.uniform = { spacing = 0.1, origin = 0 }", "array of 2 finite numbers"),
                               ("lattice.uniform = { origin = [0.0, 0.0] }", "spacing is missing"),
                               ("lattice.uniform = { spacing = 0.1, orign = [0.0, 0.0] }", "did you mean 'origin'"),
-                              ("lattice = { regular = { spacing = 0.1 } }", "one of uniform and concentric"),
+                              ("lattice = { regular = { spacing = 0.1 } }", "unknown key 'regular' in body[0].lattice (allowed here: concentric, uniform)"),
                               ("lattice = {}", "one of uniform and concentric"),
                               ("lattice = 3", "must be a table"),
                               ("lattice.uniform = { spacing = 0.1 }\nlattice.concentric = {}", "one of uniform and concentric"),
