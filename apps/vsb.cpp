@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The program vsb: run, check, study, info.
+/// The program vsb: run, check, study, keys, info.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -14,11 +14,14 @@
 #include "run/check_scene.hpp"
 #include "run/run_scene.hpp"
 #include "run/standard_streams.hpp"
+#include "scene/key_reference.hpp"
 #include "scene/open_setting.hpp"
 #include "scene/scene_error.hpp"
+#include "scene/scene_keys.hpp"
 #include "setup/place_particles.hpp"
 #include "study/read_study.hpp"
 #include "study/run_study.hpp"
+#include "study/study_keys.hpp"
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -60,7 +63,8 @@ int run_command(int argc, char** argv) {
       "A scene is a TOML file; the ones to start from lie in apps/scenes. A typical session:\n"
       "  vsb check apps/scenes/column.toml                        what would run, and what it would cost\n"
       "  vsb run apps/scenes/column.toml --set time.steps=30000   run it, with another number of steps\n"
-      "  /usr/bin/python3 apps/plot/plot.py results/column             draw its pictures\n\n"
+      "  /usr/bin/python3 apps/plot/plot.py results/column             draw its pictures\n"
+      "  vsb keys traction                                        every key of a table, or of a name\n\n"
       "Exit codes: 0 done, 2 bad usage or input, 3 diverged, 4 files cannot be read or written,\n"
       "5 interrupted, checkpoint written, 6 a study ran but missed an expectation, 7 not static after "
       "max_steps\n"
@@ -122,6 +126,13 @@ int run_command(int argc, char** argv) {
   add_threads(study);
   study->add_flag("--quiet", study_options.quiet, "Print failing lines only");
 
+  std::string key;
+  bool of_studies = false;
+  auto* keys =
+      app.add_subcommand("keys", "Print the reference of the keys of scenes (Markdown), or a part of it");
+  keys->add_option("key", key, "A key or a table, e.g. friction_angle or body.material (default: all)");
+  keys->add_flag("--study", of_studies, "The keys of studies");
+
   auto* info = app.add_subcommand("info", "Print version, commit, Kokkos, backend and instruction set");
 
   try {
@@ -133,6 +144,12 @@ int run_command(int argc, char** argv) {
   try {
     if (*info) {
       print_info();
+      return exit_done;
+    }
+    if (*keys) {
+      const auto part = [&] { return key_reference_of(of_studies ? study_keys : scene_keys(), key); };
+      const auto all = [&] { return of_studies ? study_key_reference() : scene_key_reference(); };
+      fmt::print("{}", key.empty() ? all() : part());
       return exit_done;
     }
     if (*study) {

@@ -52,7 +52,7 @@ class Readme(ProgramTest):
         (self.folder / "vsb").symlink_to(PROGRAM)
         text = subprocess.run([PROGRAM, "--help"], capture_output=True, text=True).stdout
         commands = re.findall(r"^  ((?:vsb|/usr/bin/python3) .*?)   ", text, re.MULTILINE)
-        self.assertEqual(len(commands), 3)
+        self.assertEqual(len(commands), 4)
         for command in commands:
             done = subprocess.run(f"PATH=.:$PATH {command}", shell=True, cwd=self.folder, capture_output=True, text=True, timeout=600)
             self.assertEqual(done.returncode, 0, f"{command}\n{done.stdout}{done.stderr}")
