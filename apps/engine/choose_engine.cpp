@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/lane_engine.hpp"
+#include "engine/choose_engine.hpp"
+
+#include <fmt/format.h>
+
+#include "setup/execution_space.hpp"
+#include "setup/setup_error.hpp"
 
 namespace vsb::app {
 

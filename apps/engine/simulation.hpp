@@ -120,7 +120,7 @@ class Simulation {
   virtual VoidFilterReport void_filter() const = 0;
   /// What looks wrong about the virtual stress fields, a sentence each; see setup/field_advice.hpp.
   virtual std::vector<std::string> advice() const = 0;
-  /// Why the scene is not run on cell lanes; empty where it is (engine/lane_engine.hpp).
+  /// Why the scene is not run on cell lanes; empty where it is (engine/choose_engine.hpp).
   virtual std::string particle_kernels_because() const = 0;
   /// Memory of particles, nodes and occupancy at present.
   virtual size_t state_bytes() const = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The simulations that the program can make, one for each precision and basis, in all dimensions; each is
-/// compiled on its own, from simulation_instance.cpp.in.
+/// The simulations that the program can make, one for each precision and basis, in all dimensions; the
+/// particle kernels of each are compiled on their own, from basis_instance.cpp.in.
 #pragma once
 
 #include "engine/simulation.hpp"
