@@ -33,7 +33,7 @@ using namespace vsb::app;
 
 /// Large arrays go back to the system when they are freed. Left alone, glibc keeps those of up to 32 MB for
 /// itself: what a frame needs for a moment, as much again as the particles, would stay for the whole run.
-void give_back_large_arrays() {
+void release_large_arrays() {
 #ifdef __GLIBC__
   mallopt(M_MMAP_THRESHOLD, 1 << 20);
 #endif
@@ -212,7 +212,7 @@ int run_command(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   wait_gently(argv);
-  give_back_large_arrays();
+  release_large_arrays();
   survive_lost_output();
   const int code = run_command(argc, argv);
   return output_is_whole() || code != exit_done ? code : exit_files;

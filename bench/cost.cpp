@@ -86,15 +86,16 @@ Row measure(const CostCase& what, const CostOptions& o, const Record& rates) {
 
 template <class Real>
 Record measure_flows(const CostOptions& o) {
-  progress(std::string("flying block and sparse grid, ") + real_name[sizeof(Real) == 8 ? 0 : 1]);
+  progress(std::string("translating block and sparse grid, ") + real_name[sizeof(Real) == 8 ? 0 : 1]);
   Record all;
   const auto add = [&](const Record& part) {
     for (const auto& [name, value] : part.all()) all.set(name, value);
   };
-  for (const auto& [places, steps] : {std::pair(Places::lattice, 1000), std::pair(Places::jittered, 200)})
+  for (const auto& [arrangement, steps] :
+       {std::pair(Arrangement::lattice, 1000), std::pair(Arrangement::jittered, 200)})
     for (const int direction : {0, 1, 2})
-      add(in_child(o.threads, [&, places = places, steps = steps](Record& r) {
-        Measurements<Real>::flow(direction, places, steps, r);
+      add(in_child(o.threads, [&, arrangement = arrangement, steps = steps](Record& r) {
+        Measurements<Real>::translation(direction, arrangement, steps, r);
       }));
   add(in_child(o.threads, [&](Record& r) { Measurements<Real>::sparse(r); }));
   add(in_child(o.threads, [&](Record& r) { Measurements<Real>::materials(r); }));
@@ -128,8 +129,10 @@ void print_engine(const Row& row) {
       r["flops"], r["share of FMA %"], r["least bytes"], r["share of stream %"]);
   std::printf("  bytes per particle: state %.0f, resident while stepping %.0f, peak with set-up %.0f\n",
               r["state bytes"], r["stepping bytes"], r["peak bytes"]);
-  std::printf("  a step of one sweep takes %.3f times that of two; the program takes %s\n",
-              r["one sweep / two"], r["sweeps"] == 1 ? "one" : "two");
+  std::printf(
+      "  a step that re-maps by the mass matrix takes %.3f times one with a second sweep; the program takes "
+      "%s\n",
+      r["mass matrix / second sweep"], r["by mass matrix"] == 1 ? "the mass matrix" : "a second sweep");
   print_extras(r, "extra by MOD",
                {"null", "pressure", "pressure, marked", "pressure, marked, summed anew", "tensor",
                 "tensor, marked", "affine", "affine, marked", "function", "function, marked"},
@@ -169,9 +172,8 @@ void print(const Row& row) {
 
 void print_flows(const Record& r, const char* real) {
   std::printf(
-      "\nfree flight at 0.1 cells per step, a grid of 30 times the body's volume, plasticity, and means of "
-      "the "
-      "divergence, %s\n",
+      "\nrigid translation at 0.1 cells per step, a grid of 30 times the body's volume, plasticity, and "
+      "means of the divergence, %s\n",
       real);
   for (const auto& [name, value] : r.all()) std::printf("  %-30s %8.3f\n", name.c_str(), value);
   std::fflush(stdout);

@@ -14,7 +14,7 @@ struct Measurements {
   static void engine(const CostCase& what, int axis, int repeats, Record& record);
   static void base(const CostCase& what, int axis, int repeats, Record& record);
   static void kernels(const CostCase& what, int axis, int repeats, Record& record);
-  static void flow(int direction, Places places, int steps, Record& record);
+  static void translation(int direction, Arrangement arrangement, int steps, Record& record);
   static void materials(Record& record);
   static void means(Record& record);
   static void sparse(Record& record);

@@ -5,7 +5,7 @@
 /// Rounds of three steps of one and the same state: off, on, and off again for the null test, in an order
 /// that changes from round to round. The extra cost is the median of on / off - 1 over the rounds, the null
 /// test that of off / off - 1: what the measurement says where there is nothing to be found. Two states
-/// instead of one would differ by several percent from their places in memory alone.
+/// instead of one would differ by several percent from their addresses in memory alone.
 
 #include "common_steps.hpp"
 #include "registry.hpp"

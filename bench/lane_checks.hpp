@@ -116,18 +116,18 @@ void stretch_nodes(const Lane<Dim, Real>& s, double g) {
   const auto& lanes = s.memory.lanes;
   const auto& nodes = s.memory.nodes;
   const auto data = snapshot(nodes.data);
-  const auto chunk_at = snapshot(lanes.chunk_at);
+  const auto node_group_at = snapshot(lanes.node_group_at);
   const int per_row = lanes.groups_per_row() + 1;
-  for (int place = 0; place < static_cast<int>(chunk_at.extent(0)); ++place) {
-    const int chunk = chunk_at(static_cast<size_t>(place)), row = place / per_row;
-    if (chunk < 0) continue;
+  for (int box_index = 0; box_index < static_cast<int>(node_group_at.extent(0)); ++box_index) {
+    const int node_group = node_group_at(static_cast<size_t>(box_index)), row = box_index / per_row;
+    if (node_group < 0) continue;
     for (int l = 0; l < lanes.width; ++l) {
-      int at[3] = {place % per_row * lanes.width + l, row % lanes.node_rows_per_plane(),
+      int at[3] = {box_index % per_row * lanes.width + l, row % lanes.node_rows_per_plane(),
                    row / lanes.node_rows_per_plane()};
       if (Dim == 2) at[1] = row;
       for (int i = 0; i < Dim; ++i) {
         const auto value = static_cast<Real>(g * (lanes.box.first[i] + at[i]));
-        const auto node = static_cast<size_t>(chunk * lanes.width + l);
+        const auto node = static_cast<size_t>(node_group * lanes.width + l);
         data(node, static_cast<size_t>(nodes.displacement_column + i)) = value;
         data(node, static_cast<size_t>(nodes.remapped_column + i)) = value;
       }
@@ -157,7 +157,7 @@ std::string check_lane_motion(const Lane<Dim, Real>& s, const Run& run) {
   Sum positions[Dim];
   for (int i = 0; i < Dim; ++i) positions[i] = position(i);
   run();
-  findings.require(count_leavers(Exec(), s.memory) == 0, "a particle left its cell");
+  findings.require(count_migrating(Exec(), s.memory) == 0, "a particle left its cell");
   findings.require_equal(volume(), std::pow(1 + g, Dim) * volumes, "volume");
   for (int i = 0; i < Dim; ++i)
     findings.require_equal(position(i), (1 + g) * positions[i], "sum of positions");
@@ -212,7 +212,7 @@ std::string check_lane_step(const Column<Dim, Real>& column, const Lane<Dim, Rea
   return findings.text();
 }
 
-/// After so many calls of run(n) no particle of a free flight, no mass and no momentum is missing.
+/// After so many calls of run(n) no particle of a rigid translation, no mass and no momentum is missing.
 template <int Dim, class Real, class Run>
 std::string check_moving(const Column<Dim, Real>& column, const Lane<Dim, Real>& s, int steps,
                          const Run& run) {

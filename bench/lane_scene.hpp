@@ -61,8 +61,8 @@ void step(const Column<Dim, Real>& column, Lane<Dim, Real>& s, const Field& fiel
 /// The column without load and support, on its way by so many cells per step in all directions.
 template <int Dim, class Real>
 Column<Dim, Real> make_moving_block(const Size& size, const Vector<Dim, double>& cells_per_step,
-                                    Places places = Places::jittered) {
-  auto column = make_column<Dim, Real>(size, Load::off, 0, places);
+                                    Arrangement arrangement = Arrangement::jittered) {
+  auto column = make_column<Dim, Real>(size, Load::off, 0, arrangement);
   column.options.damping = 0;
   column.options.gravity = Vector<Dim, Real>::zero();
   const auto host = host_copy(column.block);
@@ -74,8 +74,8 @@ Column<Dim, Real> make_moving_block(const Size& size, const Vector<Dim, double>&
   return column;
 }
 
-/// Bytes that the steps touch: particles with their ghosts, groups, nodes and marks; lists of leavers are
-/// memory that nobody writes to while particles stay in their cells.
+/// Bytes that the steps touch: particles with their ghosts, groups, nodes and marks; lists of migrating
+/// particles are memory that nobody writes to while particles stay in their cells.
 template <int Dim, class Real>
 double state_bytes(const Lane<Dim, Real>& s) {
   const auto size = [](const auto& view) {
@@ -85,10 +85,10 @@ double state_bytes(const Lane<Dim, Real>& s) {
   const auto& n = s.memory.nodes;
   const auto& b = s.boundary;
   const double columns = static_cast<double>(l.slot_count) * l.width * l.columns() * sizeof(Real);
-  return columns + size(l.id) + size(l.held) + size(l.mass_matrices) + size(l.groups) + size(l.layer_first) +
-         size(l.plane_first) + size(l.group_at) + size(l.chunk_at) + size(n.data) + size(n.fixed) +
-         size(b.bits.occupied) + size(b.bits.exterior) + size(b.bits.boundary) + size(b.marked) +
-         size(b.active) + size(b.changed) + size(b.tractions) + size(b.declared);
+  return columns + size(l.id) + size(l.with_particle) + size(l.mass_matrices) + size(l.groups) +
+         size(l.layer_first) + size(l.plane_first) + size(l.group_at) + size(l.node_group_at) + size(n.data) +
+         size(n.fixed) + size(b.bits.occupied) + size(b.bits.exterior) + size(b.bits.boundary) +
+         size(b.marked) + size(b.active) + size(b.changed) + size(b.tractions) + size(b.declared);
 }
 
 }  // namespace vsb::bench

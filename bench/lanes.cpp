@@ -39,25 +39,25 @@ struct Packed {
           "vsb::move_lanes", detail::over_layers(Exec(), lanes),
           kernel::MoveLanes<true, Field, LinearElastic<Real>, DeterminantVolume, Dim, Real, Device>{
               detail::loaded_lanes(lanes),
-              {m.lanes, m.nodes, m.grid, column.material, {}, m.leavers},
+              {m.lanes, m.nodes, m.grid, column.material, {}, m.migrating},
               field,
               true});
     });
   }
-  Kokkos::RangePolicy<Exec> over_chunks() const {
+  Kokkos::RangePolicy<Exec> over_node_groups() const {
     return Kokkos::RangePolicy<Exec>(Exec(), 0, lanes.memory.lanes.node_count / lanes.memory.lanes.width);
   }
   void run_nodes() {
     const auto& m = lanes.memory;
     const auto& o = column.options;
-    Kokkos::parallel_for("vsb::update_lane_nodes", over_chunks(),
+    Kokkos::parallel_for("vsb::update_lane_nodes", over_node_groups(),
                          kernel::UpdateLaneNodes<Dim, Real, Device>{
                              {m.nodes}, o.gravity, m.grid.inverse_spacing, o.damping, o.dt, false});
   }
   void run_remap() {
     const auto& m = lanes.memory;
     Kokkos::parallel_for(
-        "vsb::remap_lane_nodes", over_chunks(),
+        "vsb::remap_lane_nodes", over_node_groups(),
         kernel::RemapLaneNodes<Dim, Real, Device>{{m.nodes}, column.options.dt * m.grid.inverse_spacing[0]});
   }
   void run_mark() {

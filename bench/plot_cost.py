@@ -25,13 +25,13 @@ METHODS = [("material points", "MP %", "end face: MP %"),
 
 def draw_extras(axes, row):
     shown = [method for method in METHODS if row["found"].get(method[2]) is not None]
-    for place, (name, paper, ours) in enumerate(shown):
+    for bar, (name, paper, ours) in enumerate(shown):
         value = row["found"][ours]
-        axes.barh(place - 0.2, value, 0.4, color="tab:blue", label="measured" if place == 0 else None)
-        axes.text(max(value, 0), place - 0.2, f" {value:+.1f}", va="center", fontsize=7)
+        axes.barh(bar - 0.2, value, 0.4, color="tab:blue", label="measured" if bar == 0 else None)
+        axes.text(max(value, 0), bar - 0.2, f" {value:+.1f}", va="center", fontsize=7)
         if paper and row["paper"]:
-            axes.barh(place + 0.2, row["paper"][paper], 0.4, color="tab:orange",
-                      label="paper, Table 3" if place == 0 else None)
+            axes.barh(bar + 0.2, row["paper"][paper], 0.4, color="tab:orange",
+                      label="paper, Table 3" if bar == 0 else None)
     axes.set_yticks(range(len(shown)), [method[0] for method in shown], fontsize=7)
     axes.invert_yaxis()
     axes.axvline(0, color="black", linewidth=0.5)
@@ -52,10 +52,10 @@ def main():
     lines = -(-len(rows) // columns)
     figure, axes = plt.subplots(lines, columns, figsize=(5.5 * columns, 2.6 * lines + 0.6), squeeze=False,
                                 layout="constrained")
-    for row, place in zip(rows, axes.flat):
-        draw_extras(place, row)
-    for place in axes.flat[len(rows):]:
-        place.axis("off")
+    for row, panel in zip(rows, axes.flat):
+        draw_extras(panel, row)
+    for panel in axes.flat[len(rows):]:
+        panel.axis("off")
     axes.flat[0].legend(fontsize=7)
     context = cost["context"]
     figure.suptitle(f"Cost of a traction per particle and step; {context['CPU']}, {context['Kokkos']}, "

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// Timing variants of a step in turns on one and the same state: two states differ by several percent from
-/// their places in memory alone, and the same state from minute to minute by more.
+/// their addresses in memory alone, and the same state from minute to minute by more.
 #pragma once
 
 #include "clock.hpp"

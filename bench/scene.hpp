@@ -36,7 +36,7 @@ constexpr bool runs_on_host = std::is_same_v<Device::memory_space, Kokkos::HostS
 enum class Load { off, end_face, free_faces };
 
 /// Where particles lie: on a lattice, or anywhere around its points.
-enum class Places { jittered, lattice };
+enum class Arrangement { jittered, lattice };
 
 /// How fine the column is.
 struct Size {
@@ -115,23 +115,23 @@ LinearBasis<Dim, Real> make_basis(const Size& size, int axis) {
 
 /// Fills the particles; `strain` is the size of the random state, the strain of its stress.
 template <int Dim, class Real>
-void fill_particles(const Column<Dim, Real>& scene, Places places, double strain, double youngs_modulus,
-                    double wave_speed) {
+void fill_particles(const Column<Dim, Real>& scene, Arrangement arrangement, double strain,
+                    double youngs_modulus, double wave_speed) {
   const auto host = host_copy(scene.block);
   const auto& p = host.particles;
   const int across = scene.size.cells_across * scene.size.per_direction,
             along = scene.size.cells_along * scene.size.per_direction;
   const double distance = scene.spacing() / scene.size.per_direction,
-               jitter = places == Places::jittered ? 0.3 * distance : 0;
+               jitter = arrangement == Arrangement::jittered ? 0.3 * distance : 0;
   double volume = 1;
   for (int i = 0; i < Dim; ++i) volume *= distance;
   Noise noise;
   for (int n = 0; n < p.count(); ++n) {
     int k = n;
     for (int i = 0; i < Dim; ++i) {
-      const int extent = i == scene.axis ? along : across, place = k % extent;
+      const int extent = i == scene.axis ? along : across, number = k % extent;
       k /= extent;
-      p.position(n, i) = static_cast<Real>((place + 0.5) * distance + jitter * noise());
+      p.position(n, i) = static_cast<Real>((number + 0.5) * distance + jitter * noise());
       p.velocity(n, i) = static_cast<Real>(strain * wave_speed * noise());
     }
     p.volume(n) = static_cast<Real>(volume);
@@ -170,7 +170,7 @@ void apply_load(Scene<Dim, Real>& scene, Load load) {
 /// The column at rest but for noise.
 template <int Dim, class Real>
 Column<Dim, Real> make_column(const Size& size, Load load, int axis = Dim - 1,
-                              Places places = Places::jittered) {
+                              Arrangement arrangement = Arrangement::jittered) {
   const double E = 1e6, nu = 0.3;
   Column<Dim, Real> s;
   s.axis = axis;
@@ -187,7 +187,7 @@ Column<Dim, Real> make_column(const Size& size, Load load, int axis = Dim - 1,
   s.options.gravity[s.axis] = static_cast<Real>(-strain * E / (s.density * s.length));
   s.virtual_stress.stress[0] = pressure_stress<Dim>(static_cast<Real>(s.pressure));
   s.virtual_stress.count = 1;
-  fill_particles(s, places, strain, E, math::sqrt(M / s.density));
+  fill_particles(s, arrangement, strain, E, math::sqrt(M / s.density));
   return s;
 }
 

@@ -12,7 +12,7 @@
 namespace vsb::bench {
 
 /// The column of all benchmarks, in a grid that leaves it the cells that wider functions want beyond its
-/// faces, held at its lower end.
+/// faces, fixed at its lower end.
 template <int Dim, class Real>
 struct SplineColumn {
   Column<Dim, Real> column;

@@ -21,11 +21,11 @@ void for_each_loaded(const Column<Dim, Real>& column, const Work& work) {
     int k = n;
     for (int i = 0; i < Dim; ++i) {
       const bool is_axis = i == column.axis;
-      const int extent = is_axis ? along : across, place = k % extent;
+      const int extent = is_axis ? along : across, number = k % extent;
       k /= extent;
       if (!is_axis && column.load == Load::end_face) continue;
-      if (place == extent - 1) work(n, i, 1);
-      if (place == 0 && !is_axis) work(n, i, -1);
+      if (number == extent - 1) work(n, i, 1);
+      if (number == 0 && !is_axis) work(n, i, -1);
     }
   }
 }

@@ -92,7 +92,7 @@ template <class Exec, class Basis, class Field, int Dim, class Real, class Devic
 int step(const Exec& exec, State<Dim, Real, Device>& s, const std::vector<Body<Real>>& bodies,
          const Basis& basis, const Field& virtual_stress, const StepOptions<Dim, Real>& options) {
   const ProfilingRegion region("vsb::step");
-  require_reach<Exec, Device>();
+  require_accessible<Exec, Device>();
   detail::check_step(s, bodies, basis, options);
   if (!s.weighed) check_masses(exec, s.particles);
   s.weighed = true;

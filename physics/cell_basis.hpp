@@ -13,8 +13,9 @@ template <class Grid>
 struct CellBasis {
   static constexpr int dimension = Grid::dimension;  ///< of space: 1, 2 or 3
   static constexpr int support = Grid::corners;      ///< nodes whose functions are not zero in a cell, 2^Dim
-  /// Rings of cells, beyond those around a node, that its support overlaps.
-  static constexpr int reach = 0;
+  /// Rings of cells, beyond those around a node, that its support overlaps; a grid has as many layers of
+  /// ghost cells.
+  static constexpr int ghost_layers = 0;
   /// The bins of a cell's first corners, as many as this, have all its particles.
   static constexpr int bins_of_cell = 1;
   using real = typename Grid::real;          ///< type of the numbers

@@ -79,7 +79,7 @@ struct CellNumbering {
     for (int i = Dim - 1; i > 0; --i) row = row * cells[i] + ijk[i];
     return row;
   }
-  /// The place (i, j, k) of a cell number.
+  /// The position (i, j, k) of a cell number.
   KOKKOS_FUNCTION Vector<Dim, int> cell_ijk(int cell) const {
     Vector<Dim, int> ijk;
     for (int i = 0; i < Dim; ++i) {

@@ -32,15 +32,15 @@ KOKKOS_FORCEINLINE_FUNCTION T mean_stress(const SymmetricTensor<Dim, T>& stress)
 /// Whether sqrt(J2) + slope sigma_m > strength; on packs for every lane.
 template <class T>
 KOKKOS_FORCEINLINE_FUNCTION auto outside_cone(T J2, T mean, T slope, T strength) {
-  const T room = strength - slope * mean;
-  return (J2 > T(room * room)) | (room < T(0));
+  const T margin = strength - slope * mean;
+  return (J2 > T(margin * margin)) | (margin < T(0));
 }
 
 /// Whether sigma_m + 2 sqrt(J2 / 3) > tensile strength; on packs for every lane.
 template <class T>
 KOKKOS_FORCEINLINE_FUNCTION auto may_exceed_tension(T J2, T mean, T tensile_strength) {
-  const T room = tensile_strength - mean;
-  return (T(T(4) / T(3) * J2) > T(room * room)) | (room < T(0));
+  const T margin = tensile_strength - mean;
+  return (T(T(4) / T(3) * J2) > T(margin * margin)) | (margin < T(0));
 }
 
 }  // namespace vsb

@@ -3,7 +3,7 @@
 /// Multilinear basis functions on a uniform grid: N_I = prod_i (1 - |x_i - x_Ii| / h_i) within one cell of
 /// node I.
 ///
-/// What a kernel asks of any basis: `dimension`, `real`, `support`, `reach`, shape(x), contains(x),
+/// What a kernel asks of any basis: `dimension`, `real`, `support`, `ghost_layers`, shape(x), contains(x),
 /// mirrored(axis, side), and bins (see physics/cell_basis.hpp).
 #pragma once
 

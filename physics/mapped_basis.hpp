@@ -18,10 +18,10 @@ struct MappedLinearBasis : CellBasis<MappedGrid<Dim, Real>> {
 
   /// The basis functions at x, which must lie in the grid. Support node a is corner a of the cell.
   KOKKOS_FUNCTION Shape<Dim, support, Real> shape(const Vector<Dim, Real>& x) const {
-    auto place = grid.locate(x);
-    for (int i = 0; i < Dim; ++i) place.xi[i] = off_the_faces(place.xi[i]);
-    const int lowest = grid.node_index(place.cell);
-    const auto point = grid.cell(place.cell).at(place.xi);
+    auto location = grid.locate(x);
+    for (int i = 0; i < Dim; ++i) location.xi[i] = off_the_faces(location.xi[i]);
+    const int lowest = grid.node_index(location.cell);
+    const auto point = grid.cell(location.cell).at(location.xi);
     const auto inverse_J = inverse(point.J);
     Shape<Dim, support, Real> s;
     for (int a = 0; a < support; ++a) {

@@ -51,7 +51,7 @@ struct MappedGrid : CellNumbering<Dim> {
   KOKKOS_FUNCTION Real cell_volume(const Vector<Dim, int>& ijk) const { return cell(ijk).volume(); }
 
   /// A cell and the local coordinates in it.
-  struct Place {
+  struct Location {
     Vector<Dim, int> cell;  ///< (i, j, k)
     Vector<Dim, Real> xi;   ///< in [0, 1]^Dim
     bool found;             ///< false: `cell` and `xi` mean nothing
@@ -59,11 +59,11 @@ struct MappedGrid : CellNumbering<Dim> {
 
   /// The cell and local coordinates of x; not found outside the grid and at NaN. A point on a face belongs to
   /// one of its cells. A point outside the grid by round-off counts as inside.
-  KOKKOS_FUNCTION Place locate(const Vector<Dim, Real>& x) const {
+  KOKKOS_FUNCTION Location locate(const Vector<Dim, Real>& x) const {
     if (!raster.contains(x)) return {Vector<Dim, int>::zero(), Vector<Dim, Real>::zero(), false};
     if (rectilinear) return bisect(x);
-    const Place place = walk(x);
-    return place.found ? place : search(x);
+    const Location location = walk(x);
+    return location.found ? location : search(x);
   }
 
   /// Whether x lies in the grid; false at NaN.
@@ -75,80 +75,80 @@ struct MappedGrid : CellNumbering<Dim> {
   }
 
   /// In a rectilinear grid. A point on a face belongs to the cell above it.
-  KOKKOS_FUNCTION Place bisect(const Vector<Dim, Real>& x) const {
-    Place place{Vector<Dim, int>::zero(), Vector<Dim, Real>::zero(), false};
+  KOKKOS_FUNCTION Location bisect(const Vector<Dim, Real>& x) const {
+    Location location{Vector<Dim, int>::zero(), Vector<Dim, Real>::zero(), false};
     for (int i = 0; i < Dim; ++i) {
       const int stride = this->node_stride(i);
       int last = cells[i];
-      while (last - place.cell[i] > 1) {
-        const int middle = (place.cell[i] + last) / 2;
-        (x[i] < position[middle * stride * Dim + i] ? last : place.cell[i]) = middle;
+      while (last - location.cell[i] > 1) {
+        const int middle = (location.cell[i] + last) / 2;
+        (x[i] < position[middle * stride * Dim + i] ? last : location.cell[i]) = middle;
       }
     }
-    inside(x, place);
-    return place;
+    inside(x, location);
+    return location;
   }
 
   /// From the raster's cell to the one that contains x.
-  KOKKOS_FUNCTION Place walk(const Vector<Dim, Real>& x) const {
+  KOKKOS_FUNCTION Location walk(const Vector<Dim, Real>& x) const {
     return walk(x, start_cell[raster.cell_index(raster.cell_containing(x))]);
   }
   /// From a given cell. Not found where the walk ends at a face of the grid, or goes in circles. This happens
   /// for points outside the grid, and in cells that are far from rectangles.
-  KOKKOS_FUNCTION Place walk(const Vector<Dim, Real>& x, int start) const {
-    Place place{this->cell_ijk(start), Vector<Dim, Real>::zero(), false};
+  KOKKOS_FUNCTION Location walk(const Vector<Dim, Real>& x, int start) const {
+    Location location{this->cell_ijk(start), Vector<Dim, Real>::zero(), false};
     auto stride = Vector<Dim, int>::zero();  // the last one along an axis; negative: backwards
     bool halve[Dim] = {};                    // whether one was too long
     int most_hops = 0;                       // a bound far above the steps of a walk that succeeds
     for (int i = 0; i < Dim; ++i)
       for (int n = cells[i]; n > 0; n /= 2) most_hops += 8;
     for (int hop = 0; hop <= most_hops; ++hop) {
-      if (inside(x, place)) return place;
+      if (inside(x, location)) return location;
       int axis = -1;
       Real beyond = tolerance;
       for (int i = 0; i < Dim; ++i) {
-        const Real b = math::max(-place.xi[i], place.xi[i] - Real(1));
-        const bool last = place.xi[i] < Real(0) ? place.cell[i] == 0 : place.cell[i] == cells[i] - 1;
+        const Real b = math::max(-location.xi[i], location.xi[i] - Real(1));
+        const bool last = location.xi[i] < Real(0) ? location.cell[i] == 0 : location.cell[i] == cells[i] - 1;
         if (b > beyond && !last) {
           axis = i;
           beyond = b;
         }
       }
       if (axis < 0) break;
-      const int direction = place.xi[axis] < Real(0) ? -1 : 1, before = direction * stride[axis];
+      const int direction = location.xi[axis] < Real(0) ? -1 : 1, before = direction * stride[axis];
       halve[axis] = halve[axis] || before < 0;
       const int length = math::max(1, halve[axis] ? math::abs(before) / 2 : 2 * before);
       stride[axis] = direction * length;
-      place.cell[axis] = math::max(0, math::min(place.cell[axis] + stride[axis], cells[axis] - 1));
+      location.cell[axis] = math::max(0, math::min(location.cell[axis] + stride[axis], cells[axis] - 1));
       if (halve[axis] && length == 1) {  // from here anew
         halve[axis] = false;
         stride[axis] = 0;
       }
     }
-    place.found = false;
-    return place;
+    location.found = false;
+    return location;
   }
 
   /// Tests all cells for x, for the few points that a walk does not find.
-  KOKKOS_FUNCTION Place search(const Vector<Dim, Real>& x) const {
-    Place place{Vector<Dim, int>::zero(), Vector<Dim, Real>::zero(), false};
+  KOKKOS_FUNCTION Location search(const Vector<Dim, Real>& x) const {
+    Location location{Vector<Dim, int>::zero(), Vector<Dim, Real>::zero(), false};
     for (int n = 0; n < this->cell_count(); ++n) {
-      place.cell = this->cell_ijk(n);
-      if (near(x, place.cell) && inside(x, place)) return place;
+      location.cell = this->cell_ijk(n);
+      if (near(x, location.cell) && inside(x, location)) return location;
     }
-    place.cell = Vector<Dim, int>::zero();
-    return place;
+    location.cell = Vector<Dim, int>::zero();
+    return location;
   }
 
-  /// Sets the local coordinates of x in place.cell (where x is outside, they tell in which direction) and
+  /// Sets the local coordinates of x in location.cell (where x is outside, they tell in which direction) and
   /// whether it is inside.
-  KOKKOS_FUNCTION bool inside(const Vector<Dim, Real>& x, Place& place) const {
-    const auto inverse = cell(place.cell).inverse(x);
-    place.xi = inverse.xi;
-    place.found = inverse.converged;
+  KOKKOS_FUNCTION bool inside(const Vector<Dim, Real>& x, Location& location) const {
+    const auto inverse = cell(location.cell).inverse(x);
+    location.xi = inverse.xi;
+    location.found = inverse.converged;
     for (int i = 0; i < Dim; ++i)
-      if (!(place.xi[i] >= -tolerance && place.xi[i] <= Real(1) + tolerance)) place.found = false;
-    return place.found;
+      if (!(location.xi[i] >= -tolerance && location.xi[i] <= Real(1) + tolerance)) location.found = false;
+    return location.found;
   }
 
  private:

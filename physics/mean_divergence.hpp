@@ -9,8 +9,8 @@
 /// the stable time step does not become shorter.
 ///
 /// For bases with one cell as support M_c is 1 in cell c: a mean per cell. For bases around the nearest node
-/// M_c is the multilinear function around the centre of cell c. With these bases means over cells, dual cells
-/// or blocks of cells are many times less accurate where the mean stress varies.
+/// M_c is the multilinear function around the centre of cell c. With these bases means over cells,
+/// node-centred cells or blocks of cells are many times less accurate where the mean stress varies.
 #pragma once
 
 #include <vsb/physics/cell_basis.hpp>
@@ -93,7 +93,8 @@ struct CentreMeans {
 
   /// Number of functions. A few of them belong to no cell.
   KOKKOS_FUNCTION int node_count() const { return grid.node_count(); }
-  /// The bin in which the function at corner a of the dual cell is `function`, or -1 where there is none.
+  /// The bin in which the function at corner a of the node-centred cell is `function`, or -1 where there is
+  /// none.
   KOKKOS_FUNCTION int bin_of_node(int function, int a) const {
     auto nearest = grid.node_ijk(function);
     for (int i = 0; i < Dim; ++i)
@@ -123,11 +124,11 @@ struct CentreMeans {
   KOKKOS_FUNCTION Real mean(int c, const Sums& sums) const {
     const auto volume = [&](const Vector<Dim, int>& cell) { return sums(grid.node_index(cell), 0); };
     if (!(sums(c, 0) > Real(0))) return 0;
-    const auto home = home_of(grid.node_ijk(c), volume);
-    const int number = grid.node_index(home);
+    const auto merged_into = merged_function(grid.node_ijk(c), volume);
+    const int number = grid.node_index(merged_into);
     Real all = sums(number, 0), divergence = sums(number, 1);
-    for_each_neighbour(home, [&](const auto& n) {
-      if (!is_small(volume(n)) || grid.node_index(home_of(n, volume)) != number) return;
+    for_each_neighbour(merged_into, [&](const auto& n) {
+      if (!is_small(volume(n)) || grid.node_index(merged_function(n, volume)) != number) return;
       all += volume(n);
       divergence += sums(grid.node_index(n), 1);
     });
@@ -143,11 +144,11 @@ struct CentreMeans {
   ///
   /// Along a straight surface neighbours differ by round-off alone, which must not decide.
   template <class Volume>
-  KOKKOS_FUNCTION Vector<Dim, int> home_of(const Vector<Dim, int>& cell, const Volume& volume) const {
+  KOKKOS_FUNCTION Vector<Dim, int> merged_function(const Vector<Dim, int>& cell, const Volume& volume) const {
     if (!is_small(volume(cell))) return cell;
     Real largest = 0;
     for_each_neighbour(cell, [&](const auto& n) { largest = math::max(largest, volume(n)); });
-    auto home = cell;
+    auto merged_into = cell;
     int nearest = Dim + 1;
     const Real enough = math::max(least_volume(), about_as_large * largest);
     for_each_neighbour(cell, [&](const auto& n) {
@@ -155,9 +156,9 @@ struct CentreMeans {
       for (int i = 0; i < Dim; ++i) axes += n[i] != cell[i];
       if (axes >= nearest || volume(n) < enough) return;
       nearest = axes;
-      home = n;
+      merged_into = n;
     });
-    return home;
+    return merged_into;
   }
   /// The cells around, in order.
   template <class Work>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// Bins and tensor products of bases whose support nodes are the 3^Dim nodes around the nearest one. A bin is
-/// the dual cell of a node, the points nearest to it, with the number of that node.
+/// a node-centred cell, the points nearest to its node, with the number of that node.
 ///
 /// Points lie at least one cell away from the faces of `grid`. Its outermost layer of cells are ghost cells,
 /// which with_ghost_layer adds to the grid of a scene. At a wall the nodes of this layer are mirror images
@@ -55,7 +55,7 @@ struct NearestNodeBasis {
   static constexpr int dimension = Dim;  ///< of space: 1, 2 or 3
   /// Nodes whose functions may be non-zero at a point, 3^Dim.
   static constexpr int support = Dim == 1 ? 3 : Dim == 2 ? 9 : 27;
-  static constexpr int reach = 1;                ///< see CellBasis
+  static constexpr int ghost_layers = 1;         ///< see CellBasis
   static constexpr int bins_of_cell = 1 << Dim;  ///< see CellBasis
   using real = Real;                             ///< type of the numbers
   using Position = Vector<Dim, Real>;            ///< in m
@@ -78,7 +78,7 @@ struct NearestNodeBasis {
   }
 
   ///@{
-  /// As in CellBasis; bins are dual cells.
+  /// As in CellBasis; bins are node-centred cells.
   KOKKOS_FUNCTION int node_count() const { return grid.node_count(); }
   KOKKOS_FUNCTION int bin_count() const { return grid.node_count(); }
   KOKKOS_FUNCTION int bin(const Position& x) const { return grid.node_index(nearest_node(grid.in_cells(x))); }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Quadratic B-splines (physics/quadratic_bspline_basis.hpp) in the dual cell of a node, the points nearest
-/// to it, as polynomials of local coordinates xi in [0, 1]^Dim; k = sum_i 3^i k_i, k_i = 0, 1, 2:
+/// Quadratic B-splines (physics/quadratic_bspline_basis.hpp) in a node-centred cell, the points nearest
+/// to its node, as polynomials of local coordinates xi in [0, 1]^Dim; k = sum_i 3^i k_i, k_i = 0, 1, 2:
 /// - a nodal field is sum_k c_k r_k with c from its values by differences alone, where
 ///     r_k(xi) = prod_i (1, xi_i + 1/2, xi_i^2 / 2) [k_i];
 /// - a sum sum_p w_p . grad N_a(xi_p) follows from the moments sum_p w_p q_k(xi_p) of
@@ -68,7 +68,7 @@ struct Powers {
   /// xi, xi + 1/2 and xi^2 / 2, by direction.
   Vector<Dim, T> first, shifted, second;
   ///@}
-  /// At the point xi of the dual cell, in [0, 1]^Dim.
+  /// At the point xi of the node-centred cell, in [0, 1]^Dim.
   KOKKOS_FORCEINLINE_FUNCTION explicit Powers(const Vector<Dim, T>& xi) : first(xi) {
     static_for<Dim>([&](auto i) VSB_UNROLLED {
       shifted[i] = xi[i] + T(0.5);

@@ -56,9 +56,9 @@ struct UniformGrid : CellNumbering<Dim> {
   KOKKOS_FUNCTION Real in_cells(Real x, int axis) const { return (x - lower[axis]) * inverse_spacing[axis]; }
   /// The point with local coordinates xi in [0, 1]^Dim of a cell.
   KOKKOS_FUNCTION CellPoint<Dim, Real> map(const Vector<Dim, int>& cell, const Vector<Dim, Real>& xi) const {
-    CellPoint<Dim, Real> place{{}, cell_volume()};
-    for (int i = 0; i < Dim; ++i) place.x[i] = lower[i] + (static_cast<Real>(cell[i]) + xi[i]) * spacing[i];
-    return place;
+    CellPoint<Dim, Real> point{{}, cell_volume()};
+    for (int i = 0; i < Dim; ++i) point.x[i] = lower[i] + (static_cast<Real>(cell[i]) + xi[i]) * spacing[i];
+    return point;
   }
   /// The cell in which x lies; x must be in the grid.
   KOKKOS_FUNCTION Vector<Dim, int> cell_containing(const Vector<Dim, Real>& x) const {

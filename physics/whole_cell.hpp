@@ -24,10 +24,10 @@ KOKKOS_INLINE_FUNCTION void add_whole_cell(const Basis& basis, const Vector<Dim,
       xi[i] = gauss.point[k % gauss.count];
       weight *= gauss.weight[k % gauss.count];
     }
-    const auto place = basis.grid.map(cell, xi);
-    const auto shape = basis.shape(place.x);
-    const auto bar = field.at(place.x, tractions);
-    const Real V = weight * place.volume_ratio;
+    const auto point = basis.grid.map(cell, xi);
+    const auto shape = basis.shape(point.x);
+    const auto bar = field.at(point.x, tractions);
+    const Real V = weight * point.volume_ratio;
     f += V * (bar.stress * shape.dN[a] + shape.N[a] * bar.divergence);
   }
 }

@@ -158,7 +158,7 @@ ParticleBlock<Dim, Real, Device> fill_cells(const UniformGrid<Dim, Real>& grid, 
                                             Real density, const Filled& filled) {
   int parts = 1;
   for (int i = 0; i < Dim; ++i) parts *= per_direction;
-  std::vector<Vector<Dim, Real>> places;
+  std::vector<Vector<Dim, Real>> positions;
   for_each_cell(grid, [&](const Vector<Dim, int>& cell) {
     if (!filled(cell)) return;
     for (int part = 0; part < parts; ++part) {
@@ -167,13 +167,13 @@ ParticleBlock<Dim, Real, Device> fill_cells(const UniformGrid<Dim, Real>& grid, 
         x[i] = grid.lower[i] + grid.spacing[i] * (static_cast<Real>(cell[i]) +
                                                   (static_cast<Real>(rest % per_direction) + Real(0.5)) /
                                                       static_cast<Real>(per_direction));
-      places.push_back(x);
+      positions.push_back(x);
     }
   });
-  const auto block = allocate_particles<Dim, Real, Device>(static_cast<int>(places.size()));
+  const auto block = allocate_particles<Dim, Real, Device>(static_cast<int>(positions.size()));
   edit(block, [&](const auto& particles) {
     for (int p = 0; p < particles.count(); ++p) {
-      for (int i = 0; i < Dim; ++i) particles.position(p, i) = places[static_cast<size_t>(p)][i];
+      for (int i = 0; i < Dim; ++i) particles.position(p, i) = positions[static_cast<size_t>(p)][i];
       particles.volume(p) = grid.cell_volume() / static_cast<Real>(parts);
       particles.mass(p) = density * particles.volume(p);
     }

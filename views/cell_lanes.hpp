@@ -12,8 +12,8 @@
 /// the lower sums of the node plane below it and to the upper sums of the plane above it; the sum of a node
 /// is lower plus upper. One thread works on a layer, so that the sums are the same for any number of threads.
 ///
-/// With quadratic B-splines the cells of the lanes are the cells around the nodes (CellLanes::dual). All
-/// particles of such a cell have the same 3^Dim nodes, and a layer writes to three node planes.
+/// With quadratic B-splines the cells of the lanes are the cells around the nodes (CellLanes::node_centred).
+/// All particles of such a cell have the same 3^Dim nodes, and a layer writes to three node planes.
 #pragma once
 
 #include <vsb/views/masks.hpp>
@@ -81,21 +81,21 @@ struct CellLanes {
                        state_column = 2 * Dim + 2 + stress_size;
   ///@}
 
-  Columns data;                          ///< [slot * width + lane][column]
-  Ints id;                               ///< [slot * width + lane]: number of the particle; ghosts: -1
-  Kokkos::View<LaneMask*, Device> held;  ///< [slot]: bit l: lane l holds a particle
+  Columns data;  ///< [slot * width + lane][column]
+  Ints id;       ///< [slot * width + lane]: number of the particle; ghosts: -1
+  Kokkos::View<LaneMask*, Device> with_particle;     ///< [slot]: bit l: lane l holds a particle
   Kokkos::View<LaneGroup<Dim>*, Device> groups;      ///< by layer, row and x
-  Kokkos::View<LaneStencil<Dim>*, Device> stencils;  ///< [group]: where cells are dual
+  Kokkos::View<LaneStencil<Dim>*, Device> stencils;  ///< [group]: where cells are node-centred
   Ints layer_first;                                  ///< [layers + 1]: the groups of a layer
   Ints plane_first;                                  ///< [layers + 2]: the nodes of a plane
-  Ints group_at;  ///< [row of cells][groups per row]: number, -1 where there is none
-  Ints chunk_at;  ///< [row of nodes][groups per row + 1]: `width` nodes side by side
+  Ints group_at;       ///< [row of cells][groups per row]: number, -1 where there is none
+  Ints node_group_at;  ///< [row of nodes][groups per row + 1]: `width` nodes side by side
   Kokkos::View<Real*, Device>
-      mass_matrices;   ///< [(group * 3^Dim + number) * width + lane], kg, numbers as in
-                       ///< physics/cell_mass_matrix.hpp; empty: steps take two sweeps
-  CellBox<Dim> box;    ///< the cells of the scene's grid that are stored; the outermost ones are void
-  bool dual = false;   ///< whether cells are those around the nodes of a scene's grid
-  int state_size = 0;  ///< numbers of material state per particle
+      mass_matrices;          ///< [(group * 3^Dim + number) * width + lane], kg, numbers as in
+                              ///< physics/cell_mass_matrix.hpp; empty: steps re-map in a second sweep
+  CellBox<Dim> box;           ///< the cells of the scene's grid that are stored; the outermost ones are void
+  bool node_centred = false;  ///< whether cells are those around the nodes of a scene's grid
+  int state_size = 0;         ///< numbers of material state per particle
   ///@{
   /// The numbers in use: of groups, of their slots, and of the nodes that they store.
   int group_count = 0, slot_count = 0, node_count = 0;
@@ -105,7 +105,7 @@ struct CellLanes {
   /// Stored numbers of a cell's mass matrix, which is symmetric and of product form: 3^Dim.
   static constexpr int mass_matrix_size = Dim == 1 ? 3 : Dim == 2 ? 9 : 27;
   /// Whether steps re-map by the mass matrices of the cells, in one sweep over the particles.
-  KOKKOS_FUNCTION bool one_sweep() const { return mass_matrices.size() > 0; }
+  KOKKOS_FUNCTION bool remaps_by_mass_matrix() const { return mass_matrices.size() > 0; }
   /// Where one of the 3^Dim numbers of a group's mass matrices begins, in kg: `width` entries, one per cell.
   KOKKOS_FORCEINLINE_FUNCTION Real* mass_matrix_at(int group, int number) const {
     return mass_matrices.data() +
@@ -130,7 +130,7 @@ struct CellLanes {
     if constexpr (Dim == 2) return k + c;
     return (k + (c >> 1)) * node_rows_per_plane() + j + (c & 1);
   }
-  /// The row of nodes at stencil row r of a row of dual cells.
+  /// The row of nodes at stencil row r of a row of node-centred cells.
   KOKKOS_FUNCTION int stencil_row(int row, int r) const {
     const int j = row % rows_per_layer(), k = row / rows_per_layer();
     return Dim == 3 ? (k + r / 3) * node_rows_per_plane() + j + r % 3 : k + r;
@@ -138,24 +138,24 @@ struct CellLanes {
   ///@{
   /// The number of node rows of a cell, and row r of them, for either kind of cells.
   KOKKOS_FUNCTION int node_rows_of_cell() const {
-    return dual ? LaneStencil<Dim>::rows : LaneGroup<Dim>::corner_rows;
+    return node_centred ? LaneStencil<Dim>::rows : LaneGroup<Dim>::corner_rows;
   }
   KOKKOS_FUNCTION int node_row_of_cell(int row, int r) const {
-    return dual ? stencil_row(row, r) : node_row(row, r);
+    return node_centred ? stencil_row(row, r) : node_row(row, r);
   }
   ///@}
-  /// The lowest node (i, j, k) of the box in the scene's grid. The outermost cells are void, so that dual
-  /// cells need no more nodes than others.
+  /// The lowest node (i, j, k) of the box in the scene's grid. The outermost cells are void, so that
+  /// node-centred cells need no more nodes than others.
   KOKKOS_FUNCTION Vector<Dim, int> lowest_node() const {
     auto node = box.first;
-    if (dual)
+    if (node_centred)
       for (int i = 0; i < Dim; ++i) --node[i];
     return node;
   }
   /// Node x of a row of nodes of the box; -1 where no cell around it is in a group, so that it is not stored.
   KOKKOS_FUNCTION int node_at(int node_row, int x) const {
-    const int chunk = chunk_at(node_row * (groups_per_row() + 1) + x / width);
-    return chunk < 0 ? -1 : chunk * width + x % width;
+    const int node_group = node_group_at(node_row * (groups_per_row() + 1) + x / width);
+    return node_group < 0 ? -1 : node_group * width + x % width;
   }
   /// The nodes of cell x of a row of cells of the box, numbered as in multilinear.hpp.
   KOKKOS_FUNCTION void nodes_of_cell(int row, int x, int (&node)[1 << Dim]) const {
@@ -230,7 +230,7 @@ struct CellLanes {
   /// The lanes in which a group holds particles.
   KOKKOS_FUNCTION LaneMask cells_with_particles(const LaneGroup<Dim>& group) const {
     LaneMask lanes = 0;
-    for (int s = group.first; s < group.first + group.slots; ++s) lanes |= held(s);
+    for (int s = group.first; s < group.first + group.slots; ++s) lanes |= with_particle(s);
     return lanes;
   }
   /// Makes an entry a ghost. The caller updates the mask of its slot.
@@ -240,32 +240,32 @@ struct CellLanes {
   }
 };
 
-/// Nodes of the cell lanes, in chunks of `width` side by side.
+/// Nodes of the cell lanes, in node groups of `width` side by side.
 template <int Dim, class Real, class Device>
 struct LaneNodes {
   /// Columns of one set of sums: mass, momentum, force.
   static constexpr int sum_columns = 1 + 2 * Dim;
   ///@{
   /// The columns of `data`: the sums of the layers above and below the node, dt a, dt v, dt v*, 1 / m. Only
-  /// dual cells have the sums of a layer in the middle.
+  /// node-centred cells have the sums of a layer in the middle.
   static constexpr int lower_sums = 0, upper_sums = sum_columns, increment_column = 2 * sum_columns,
                        displacement_column = increment_column + Dim,
                        remapped_column = displacement_column + Dim,
                        inverse_mass_column = remapped_column + Dim, column_count = inverse_mass_column + 1;
-  /// Dual cells: sums of the plane in the middle of a layer.
-  static constexpr int middle_sums = column_count, dual_column_count = column_count + sum_columns;
+  /// Node-centred cells: sums of the plane in the middle of a layer.
+  static constexpr int middle_sums = column_count, spline_column_count = column_count + sum_columns;
   ///@}
   using P = typename Lanes<Real>::Pack;                   ///< one number of `width` nodes side by side
   Kokkos::View<Real**, Kokkos::LayoutLeft, Device> data;  ///< [node][column]: lower and upper sums of mass in
                                                           ///< kg, momentum in kg m/s and force in N; dt a in
                                                           ///< m/s; dt v and dt v* in cells; 1 / m
-  Kokkos::View<std::uint32_t* [Dim], Device> fixed;       ///< [chunk][component]: bit l: prescribed in lane l
+  Kokkos::View<std::uint32_t* [Dim], Device> fixed;  ///< [node group][component]: bit l: prescribed in lane l
 
   /// The column of sum number `sum` to which a cell adds at its corner a, by the layer of the cell.
   KOKKOS_FUNCTION static constexpr int sum_column(int sum, int a) {
     return (Dim > 1 && (a >> (Dim - 1) & 1) ? upper_sums : lower_sums) + sum;
   }
-  /// The sums to which a layer of dual cells adds at its node plane 0, 1 or 2.
+  /// The sums to which a layer of node-centred cells adds at its node plane 0, 1 or 2.
   KOKKOS_FUNCTION static constexpr int sums_of_plane(int plane) {
     return plane == 0 ? lower_sums : plane == 1 ? middle_sums : upper_sums;
   }
@@ -280,7 +280,7 @@ struct LaneNodes {
 /// Migrating particles: copies of the slots that particles left, in the order in which the sweep over their
 /// layer came to the slots.
 template <int Dim, class Real, class Device>
-struct Leavers {
+struct MigratingParticles {
   /// Lanes of a slot.
   static constexpr int width = Lanes<Real>::width;
   /// Who left a slot, and where to.
@@ -291,11 +291,11 @@ struct Leavers {
     ///@}
     LaneMask to[3];                ///< lanes whose particle goes to the layer below, the same, the one above
     LaneMask far;                  ///< lanes whose particle goes farther
-    LaneMask homeless[3];          ///< of `to`, those that found no place; of `far`, with the same layer
+    LaneMask overflow[3];          ///< of `to` and `far`: those that found no group or slot
     int id[width];                 ///< of the particle in a lane
     Vector<Dim, int> cell[width];  ///< where to; only of lanes that lost their particle
-    /// The lanes whose particle found no place in its new cell.
-    KOKKOS_FUNCTION LaneMask without_place() const { return homeless[0] | homeless[1] | homeless[2]; }
+    /// The lanes whose particle found no position in its new cell.
+    KOKKOS_FUNCTION LaneMask overflowed() const { return overflow[0] | overflow[1] | overflow[2]; }
   };
   Kokkos::View<Real**, Kokkos::LayoutRight, Device> data;  ///< [copy][column of CellLanes * width + lane]
   Kokkos::View<Head*, Device> head;                        ///< [copy]
@@ -306,11 +306,11 @@ struct Leavers {
                                         ///< are to be made anew
   Kokkos::View<int*, Device> unsummed;  ///< [layer]: 1 where they have not been
 
-  /// Calls work(copy, lane) for all particles without a place, in order.
+  /// Calls work(copy, lane) for all particles without a group or slot, in order.
   template <class Work>
-  KOKKOS_FUNCTION void for_each_homeless(int layer, const Work& work) const {
+  KOKKOS_FUNCTION void for_each_overflow(int layer, const Work& work) const {
     for (int n = first(layer); n < first(layer) + count(layer); ++n) {
-      const LaneMask lanes = head(n).without_place();
+      const LaneMask lanes = head(n).overflowed();
       for (int l = 0; l < width; ++l)
         if (lanes >> l & 1) work(n, l);
     }

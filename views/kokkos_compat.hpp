@@ -78,10 +78,10 @@ KOKKOS_INLINE_FUNCTION T max(T a, T b) {
 
 /// Whether kernels on Exec may touch Views of Device: every door to the kernels asks so, in these words.
 template <class Exec, class Device>
-constexpr void require_reach() {
+constexpr void require_accessible() {
   static_assert(
       Kokkos::SpaceAccessibility<Exec, typename Device::memory_space>::accessible,
-      "vsb: the execution space Exec cannot reach the memory of Device. Take both from one backend: "
+      "vsb: the execution space Exec cannot access the memory of Device. Take both from one backend: "
       "`using Device = Exec::device_type;`");
 }
 

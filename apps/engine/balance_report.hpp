@@ -9,8 +9,8 @@
 
 namespace vsb::app {
 
-/// b: under the loads of time t, s; `about`: a place of the scene to which the torques are moved from
-/// `origin`, about which the kernels count them; exact: of each traction at full load, about that place.
+/// b: under the loads of time t, s; `about`: a position of the scene to which the torques are moved from
+/// `origin`, about which the kernels count them; exact: of each traction at full load, about that position.
 template <int Dim>
 BalanceReport report_balance(const Scene& scene, const Balance<Dim>& b, const Point& origin,
                              const Point& about, const std::vector<Resultant>& exact, double t) {

@@ -16,7 +16,7 @@
 
 namespace vsb::app {
 
-/// Places in the scene, by particle.
+/// Positions in the scene, by particle.
 using OutsidePlaces = std::map<int, Point>;
 
 /// The face that lets a particle at x outside the grid go.
@@ -73,26 +73,26 @@ std::string leave_text(const Model<Dim, Real>& model, const HostParticles& parti
     }
   const auto& [p, x] = *first;
   const auto face = faces_passed(scene, x).front();
-  const bool held = scene.faces.fixed[face.axis][face.side] != 0;
+  const bool fixed = scene.faces.fixed[face.axis][face.side] != 0;
   const auto name = face_name(scene, face);
   return fmt::format(
       "particle {} left the grid at the {} face {}, at {}, moving at {:.3g} m/s{}; {}", model.id_of(p),
-      held ? "held" : "open", name, place_text(scene, x), detail::speed_of(particles, p),
+      fixed ? "fixed" : "open", name, position_text(scene, x), detail::speed_of(particles, p),
       outside.size() > 1 ? fmt::format(", and {} others in this step", outside.size() - 1) : "",
-      held ? "a shorter time step may keep it inside"
-           : fmt::format("make the grid larger, or let such particles go: faces.{} = \"outflow\"", name));
+      fixed ? "a shorter time step may keep it inside"
+            : fmt::format("make the grid larger, or let such particles go: faces.{} = \"outflow\"", name));
 }
 
-/// Particles and surface points outside go to a place in the grid, so that the engine can tell of them.
+/// Particles and surface points outside go to a position in the grid, so that the engine can tell of them.
 /// `host`: the engine's particles.
 template <int Dim, class Real, class HostBlock>
 void stand_in_grid(const Model<Dim, Real>& model, ParticleEngine<Dim, Real>& engine, const HostBlock& host,
                    const OutsidePlaces& outside) {
-  const auto place = [&](const auto& position, int n, const Point& x) {
-    const auto inside = to_local<Vector<Dim, Real>>(place_inside(model.scene, x), model.origin);
+  const auto move_inside = [&](const auto& position, int n, const Point& x) {
+    const auto inside = to_local<Vector<Dim, Real>>(nearest_inside(model.scene, x), model.origin);
     for (int i = 0; i < Dim; ++i) position(static_cast<size_t>(n), static_cast<size_t>(i)) = inside[i];
   };
-  for (const auto& [p, x] : outside) place(host.particles.position, p, x);
+  for (const auto& [p, x] : outside) move_inside(host.particles.position, p, x);
   copy_to_device(host, engine.block());
   const auto& points = engine.surface();
   if (points.count() == 0) return;
@@ -100,7 +100,7 @@ void stand_in_grid(const Model<Dim, Real>& model, ParticleEngine<Dim, Real>& eng
   for (int b = 0; b < points.count(); ++b) {
     Vector<Dim, Real> x;
     for (int i = 0; i < Dim; ++i) x[i] = on_host(static_cast<size_t>(b), static_cast<size_t>(i));
-    if (!engine.contains(x)) place(on_host, b, to_scene(x, model.origin));
+    if (!engine.contains(x)) move_inside(on_host, b, to_scene(x, model.origin));
   }
   Kokkos::deep_copy(points.position, on_host);
 }

@@ -26,7 +26,7 @@ LaneEngine<Dim, Real, State>::LaneEngine(Model<Dim, Real>& model, const SceneBas
   state_.memory.lanes.particle_count = model.particle_count();
   state_.boundary.declared = model.declared;
   state_.boundary.bits.carried = model.carried;
-  state_.boundary.conservative = model.loads.conservative();
+  state_.boundary.at_all_active_nodes = model.loads.at_all_active_nodes();
   state_.original = model.loads.original();
   state_.gauss_points = model.loads.gauss_points();
   if constexpr (!State::splines) state_.surface = pack_surface_points(exec_, model.surface, grid);
@@ -83,7 +83,7 @@ std::shared_ptr<ParticleEngine<Dim, Real>> LaneEngine<Dim, Real, State>::particl
   auto engine = basis_.make_particle_engine(model_);
   const auto& particles = engine->block().particles;
   unpack_particles(exec_, state_.memory, particles);
-  unpack_homeless(exec_, state_.memory, particles);
+  unpack_overflow(exec_, state_.memory, particles);
   unpack_surface_points(exec_, state_.surface, state_.memory.grid, model_.surface);
   exec_.fence();
   return engine;
@@ -175,11 +175,12 @@ size_t LaneEngine<Dim, Real, State>::bytes() const {
   const auto& b = state_.boundary;
   const auto& p = state_.surface;
   const size_t columns = static_cast<size_t>(l.slot_count) * l.width * static_cast<size_t>(l.columns());
-  return columns * sizeof(Real) +
-         bytes(l.id, l.held, l.mass_matrices, l.groups, l.stencils, l.layer_first, l.plane_first, l.group_at,
-               l.chunk_at, n.data, n.fixed, b.bits.occupied, b.bits.exterior, b.bits.boundary, b.marked,
-               b.active, b.tractions, b.bits.carried.particle, b.bits.carried.cells, b.bits.carried.nodes,
-               p.cell, p.xi, p.area, p.tractions, p.carrier, p.order, p.run_cell, p.run_first, p.cell_count);
+  return columns * sizeof(Real) + bytes(l.id, l.with_particle, l.mass_matrices, l.groups, l.stencils,
+                                        l.layer_first, l.plane_first, l.group_at, l.node_group_at, n.data,
+                                        n.fixed, b.bits.occupied, b.bits.exterior, b.bits.boundary, b.marked,
+                                        b.active, b.tractions, b.bits.carried.particle, b.bits.carried.cells,
+                                        b.bits.carried.nodes, p.cell, p.xi, p.area, p.tractions, p.carrier,
+                                        p.order, p.run_cell, p.run_first, p.cell_count);
 }
 
 template <int Dim, class Real, class State>

@@ -16,7 +16,7 @@ class LaneFields final : public FieldSource {
   using Device = ExecutionSpace::device_type;
 
   LaneFields(const ExecutionSpace& exec, const LaneState<Dim, Real, Device>& state)
-      : exec_(exec), state_(state), places_(find_places(exec, state.memory.lanes)) {}
+      : exec_(exec), state_(state), index_(index_lanes(exec, state.memory.lanes)) {}
 
   void read(unsigned field, size_t first, std::vector<double>& to) override {
     const auto& lanes = state_.memory.lanes;
@@ -25,7 +25,7 @@ class LaneFields final : public FieldSource {
       read_rows(
           exec_, "vsb::read_lane_positions", 3,
           [&](const Rows& rows) {
-            return kernel::ReadLanePositions<Dim, Real, Device>{lanes, places_, state_.memory.grid, begin,
+            return kernel::ReadLanePositions<Dim, Real, Device>{lanes, index_, state_.memory.grid, begin,
                                                                 rows};
           },
           to);
@@ -35,7 +35,7 @@ class LaneFields final : public FieldSource {
     read_rows(
         exec_, "vsb::read_lane_columns", columns,
         [&, column = column, count = count](const Rows& rows) {
-          return kernel::ReadLaneColumns<Dim, Real, Device>{lanes, places_, begin, column, count, rows};
+          return kernel::ReadLaneColumns<Dim, Real, Device>{lanes, index_, begin, column, count, rows};
         },
         to);
   }
@@ -45,7 +45,7 @@ class LaneFields final : public FieldSource {
     Kokkos::parallel_for(
         "vsb::flag_lane_particles",
         Kokkos::RangePolicy<ExecutionSpace>(exec_, 0, static_cast<int>(to.size())),
-        kernel::FlagLaneParticle<Dim, Real, Device>{state_.memory.lanes, places_, state_.boundary.tractions,
+        kernel::FlagLaneParticle<Dim, Real, Device>{state_.memory.lanes, index_, state_.boundary.tractions,
                                                     static_cast<int>(first), flags});
     exec_.fence();
     const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), flags);
@@ -75,7 +75,7 @@ class LaneFields final : public FieldSource {
 
   ExecutionSpace exec_;
   const LaneState<Dim, Real, Device>& state_;
-  LanePlaces<Device> places_;
+  LaneIndex<Device> index_;
 };
 
 }  // namespace vsb::app

@@ -33,7 +33,7 @@ std::string face_name(const Scene& scene, const GridFace& face) {
 std::vector<GridFace> faces_passed(const Scene& scene, const Point& x) {
   const Point q = logical_coordinates(scene.grid, x);
   std::vector<GridFace> passed;
-  GridFace nearest{0, 0};  // a place between an arc and its chords lies beyond no face of the polar grid
+  GridFace nearest{0, 0};  // a position between an arc and its chords lies beyond no face of the polar grid
   double most = -std::numeric_limits<double>::infinity();
   for (size_t axis = 0; axis < static_cast<size_t>(scene.dimension); ++axis)
     for (size_t side = 0; side < 2; ++side) {
@@ -48,7 +48,7 @@ std::vector<GridFace> faces_passed(const Scene& scene, const Point& x) {
   return passed;
 }
 
-Point place_inside(const Scene& scene, const Point& x) {
+Point nearest_inside(const Scene& scene, const Point& x) {
   const auto& grid = scene.grid;
   const auto d = static_cast<size_t>(scene.dimension);
   Point q = logical_coordinates(grid, x);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// Particles that are outside the grid: at which face they went, whether that lets them go, and whether the
-/// body that they belong to is in health, or the run has diverged. Places are those of the scene.
+/// body that they belong to is in health, or the run has diverged. Positions are those of the scene.
 #pragma once
 
 #include <cstdint>
@@ -20,13 +20,13 @@ struct GridFace {
 /// "x_min".
 std::string face_name(const Scene& scene, const GridFace& face);
 
-/// The faces that a place outside the grid lies beyond, in order of the axes; at least one.
+/// The faces that a position outside the grid lies beyond, in order of the axes; at least one.
 std::vector<GridFace> faces_passed(const Scene& scene, const Point& x);
 
-/// A place in the grid near one outside it.
-Point place_inside(const Scene& scene, const Point& x);
+/// A position in the grid near one outside it.
+Point nearest_inside(const Scene& scene, const Point& x);
 
-/// A speed beside the wave speed, and a stress beside the modulus: a body may fly faster than its waves, and
+/// A speed beside the wave speed, and a stress beside the modulus: a body may move faster than its waves, and
 /// one may be squeezed beyond its modulus, but a particle with both has them from a step that was unstable.
 bool looks_unstable(double speed, double wave_speed, double stress, double modulus);
 

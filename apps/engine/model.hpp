@@ -61,7 +61,7 @@ struct Model {
   }
 
   Scene scene;
-  Point origin;  ///< from where places are counted
+  Point origin;  ///< from where positions are counted
   Loads<Dim, Real> loads;
   StepOptions<Dim, Real> options{};
   std::vector<Body<Real>> bodies;

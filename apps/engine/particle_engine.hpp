@@ -31,7 +31,7 @@ class ParticleEngine : public Engine<Dim, Real>,
   ParticleBlock<Dim, Real, Device> release();
   const SurfacePoints<Dim, Real, Device>& surface() const { return state_.surface; }
 
-  /// Whether a place is inside the grid.
+  /// Whether a position is inside the grid.
   virtual bool contains(const Vector<Dim, Real>& x) const = 0;
   /// The static state under the loads of the model; the particles get its stress, if it is found.
   virtual StaticState<Dim, Real, Device> solve_static(const std::function<bool(int, double)>& go_on) = 0;

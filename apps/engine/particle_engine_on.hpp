@@ -42,7 +42,7 @@ class ParticleEngineOn final : public ParticleEngine<Dim, Real> {
     fix_faces(scene, basis_, state_.nodes.fixed_components);
     auto& occupancy = state_.occupancy;
     occupancy.tractions = model_.declared;
-    occupancy.conservative = model_.loads.conservative();
+    occupancy.at_all_active_nodes = model_.loads.at_all_active_nodes();
     if (model_.carried.particle.size() > 0)
       set_carried_tractions(occupancy, basis_, model_.carried.particle, model_.carried.tractions);
     state_.surface = model_.surface;
@@ -131,7 +131,7 @@ class ParticleEngineOn final : public ParticleEngine<Dim, Real> {
   VoidFilterReport void_filter() const override {
     const auto& o = state_.occupancy;
     const auto effect = void_filter_effect(exec_, state_.particles, o.cells, basis_, o.tractions,
-                                           o.boundary_node_count, o.conservative);
+                                           o.boundary_node_count, o.at_all_active_nodes);
     return {effect.false_voids, effect.dropped_nodes};
   }
 
@@ -149,7 +149,8 @@ class ParticleEngineOn final : public ParticleEngine<Dim, Real> {
   /// Calls work(field) with the kernels' field for the loads of the model.
   template <class Work>
   auto with_field(const Work& work) const {
-    return model_.loads.template with_field<Basis::reach == 0>(basis_.grid, state_.occupancy.cells, work);
+    return model_.loads.template with_field<Basis::ghost_layers == 0>(basis_.grid, state_.occupancy.cells,
+                                                                      work);
   }
 
   Basis basis_;

@@ -65,8 +65,8 @@ SceneReader::SceneReader(const Scene& scene, const std::vector<CutStarts>& start
       bodies_(std::move(bodies)),
       source_(std::move(source)) {}
 
-void SceneReader::to_scene_places(std::vector<double>& places) const {
-  for (size_t i = 0; i < places.size(); ++i) places[i] += origin_[i % 3];
+void SceneReader::to_scene_positions(std::vector<double>& positions) const {
+  for (size_t i = 0; i < positions.size(); ++i) positions[i] += origin_[i % 3];
 }
 
 Snapshot SceneReader::range(unsigned fields, size_t first, size_t size) const {
@@ -103,7 +103,7 @@ void SceneReader::visit(unsigned fields, const std::function<void(Snapshot&)>& w
   if ((fields & field::initial_position) == 0) {
     for (size_t first = 0; first < count; first += range_size) {
       auto s = range(fields, first, std::min(range_size, count - first));
-      to_scene_places(s.position);
+      to_scene_positions(s.position);
       work(s);
     }
     return;
@@ -118,8 +118,8 @@ void SceneReader::visit(unsigned fields, const std::function<void(Snapshot&)>& w
     s.displacement = s.position;  // the difference of small numbers, before the origin is added
     for (size_t i = 0; i < s.displacement.size(); ++i) s.displacement[i] -= start[i];
     s.initial_position = std::move(start);
-    to_scene_places(s.initial_position);
-    to_scene_places(s.position);
+    to_scene_positions(s.initial_position);
+    to_scene_positions(s.position);
     work(s);
     start.clear();
     first += size;

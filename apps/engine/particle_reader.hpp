@@ -88,7 +88,7 @@ class SceneReader final : public ParticleReader {
   void visit(unsigned fields, const std::function<void(Snapshot&)>& work) const override;
   /// With positions as the source has them, counted from origin_.
   Snapshot range(unsigned fields, size_t first, size_t size) const;
-  void to_scene_places(std::vector<double>& places) const;
+  void to_scene_positions(std::vector<double>& positions) const;
   std::int64_t id_of(size_t p) const { return ids_.empty() ? static_cast<std::int64_t>(p) : ids_[p]; }
 
   const Scene& scene_;

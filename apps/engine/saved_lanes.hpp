@@ -43,7 +43,7 @@ inline Runs entries_in_use(const std::vector<GroupShape>& groups, size_t width) 
 template <int Dim, class Real, class Device>
 std::vector<int> columns_of_sums(const LaneMemory<Dim, Real, Device>& m) {
   std::vector<int> columns;
-  for (int plane = 0; plane < (m.lanes.dual ? 3 : 2); ++plane)
+  for (int plane = 0; plane < (m.lanes.node_centred ? 3 : 2); ++plane)
     for (int c = 0; c < m.nodes.sum_columns; ++c)
       columns.push_back((plane == 0   ? m.nodes.lower_sums
                          : plane == 1 ? m.nodes.upper_sums
@@ -58,9 +58,9 @@ struct LaneNumbers {
   int width = 0;
   CellBox<Dim> box;
   int groups = 0, slots = 0, nodes = 0, slack = 0;
-  Reach<Dim> reach;
-  int steps_since_repacked = 0, steps_of_flow = 0;
-  bool prepared = false, one_sweep = false;
+  GroupMargin<Dim> group_margin;
+  int steps_since_repacked = 0, steps_with_migration = 0;
+  bool prepared = false, remaps_by_mass_matrix = false;
 };
 
 template <class View>
@@ -143,9 +143,9 @@ class RestoreLanes {
 template <class Archive, int Dim>
 bool describe(Archive& a, LaneNumbers<Dim>& n, std::vector<GroupShape>& groups) {
   return a.number(n.width) && a.number(n.box) && a.number(n.groups) && a.number(n.slots) &&
-         a.number(n.nodes) && a.number(n.slack) && a.number(n.reach) && a.number(n.steps_since_repacked) &&
-         a.number(n.steps_of_flow) && a.number(n.prepared) && a.number(n.one_sweep) &&
-         a.list(groups, n.groups);
+         a.number(n.nodes) && a.number(n.slack) && a.number(n.group_margin) &&
+         a.number(n.steps_since_repacked) && a.number(n.steps_with_migration) && a.number(n.prepared) &&
+         a.number(n.remaps_by_mass_matrix) && a.list(groups, n.groups);
 }
 
 /// The arrays of lanes with these groups.
@@ -171,21 +171,21 @@ bool describe(Archive& a, State& state, const std::vector<GroupShape>& groups) {
 template <int Dim, class Real, class Device>
 bool mark_held(const CellLanes<Dim, Real, Device>& l) {
   const auto id = on_host(l.id);
-  const auto held = Kokkos::create_mirror_view(l.held);
+  const auto with_particle = Kokkos::create_mirror_view(l.with_particle);
   std::vector<bool> seen(static_cast<size_t>(l.particle_count));
   int count = 0;
   for (size_t slot = 0; slot < static_cast<size_t>(l.slot_count); ++slot) {
-    held(slot) = 0;
+    with_particle(slot) = 0;
     for (int lane = 0; lane < l.width; ++lane) {
       const int p = id(slot * l.width + static_cast<size_t>(lane));
       if (p < 0) continue;
       if (p >= l.particle_count || seen[static_cast<size_t>(p)]) return false;
       seen[static_cast<size_t>(p)] = true;
-      held(slot) |= LaneMask(1) << lane;
+      with_particle(slot) |= LaneMask(1) << lane;
       ++count;
     }
   }
-  Kokkos::deep_copy(l.held, held);
+  Kokkos::deep_copy(l.with_particle, with_particle);
   return count == l.particle_count;
 }
 
@@ -201,11 +201,11 @@ void save_lanes(const State& state, ByteSink& to) {
                              l.slot_count,
                              l.node_count,
                              m.slack,
-                             m.reach,
+                             m.group_margin,
                              state.steps_since_repacked,
-                             state.steps_of_flow,
+                             state.steps_with_migration,
                              state.prepared,
-                             l.one_sweep()};
+                             l.remaps_by_mass_matrix()};
   const auto host = detail::on_host(l.groups);
   std::vector<GroupShape> groups;
   for (size_t g = 0; g < static_cast<size_t>(l.group_count); ++g)
@@ -226,11 +226,11 @@ bool restore_lanes(const ExecutionSpace& exec, State& state, ByteSource& saved) 
   if (!detail::describe(archive, n, groups) || n.width != l.width || n.slots < 0 || n.nodes < 0 ||
       !lay_out_lanes(exec, m, n.box, groups) || l.slot_count != n.slots || l.node_count != n.nodes)
     return false;
-  set_sweeps(l, n.one_sweep);
+  set_remap_method(l, n.remaps_by_mass_matrix);
   m.slack = n.slack;
-  m.reach = n.reach;
+  m.group_margin = n.group_margin;
   state.steps_since_repacked = n.steps_since_repacked;
-  state.steps_of_flow = n.steps_of_flow;
+  state.steps_with_migration = n.steps_with_migration;
   if (!detail::describe(archive, state, groups) || !archive.at_end() || !detail::mark_held(l)) return false;
   state.surface.sorted = false;
   mark_packed_lanes(exec, state);

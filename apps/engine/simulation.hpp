@@ -27,8 +27,8 @@ struct Diverged : std::runtime_error {
 };
 
 /// A healthy body that went out of the grid, where nothing says that it may; the text names step, time,
-/// particle, place and face. Or all particles that there were went where they may. The state can be read, not
-/// advanced.
+/// particle, position and face. Or all particles that there were went where they may. The state can be read,
+/// not advanced.
 struct LeftGrid : std::runtime_error {
   LeftGrid(const std::string& text, bool all_let_go) : std::runtime_error(text), all(all_let_go) {}
   bool all;  ///< they were let go
@@ -121,7 +121,7 @@ class Simulation {
   /// What looks wrong about the virtual stress fields, a sentence each; see setup/field_advice.hpp.
   virtual std::vector<std::string> advice() const = 0;
   /// Why the scene is not run on cell lanes; empty where it is (engine/choose_engine.hpp).
-  virtual std::string particle_kernels_because() const = 0;
+  virtual std::string why_not_lanes() const = 0;
   /// Memory of particles, nodes and occupancy at present.
   virtual size_t state_bytes() const = 0;
 
@@ -147,7 +147,7 @@ class Simulation {
   virtual std::vector<TractionState> traction_states() = 0;
   virtual std::unique_ptr<ParticleReader> read_particles() = 0;
   virtual GridSnapshot grid_snapshot() = 0;
-  /// The equivalent plastic deviatoric strain (Eq. 34) of every particle, smoothed over the nodes or as it
+  /// The equivalent plastic deviatoric strain (Eq. (34)) of every particle, smoothed over the nodes or as it
   /// is. Zero in bodies that are not plastic.
   virtual std::vector<double> equivalent_plastic_strain(bool smoothed) = 0;
   /// Volume of the particles with a plastic strain, m^3 (m^2 in 2D).

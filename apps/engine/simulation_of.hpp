@@ -40,9 +40,9 @@ class SimulationOf final : public Simulation {
     model_.let_go = [this](ParticleEngine<Dim, Real>& engine, int lost) { let_go(engine, lost); };
     const TractionMask on_surface = basis_->place_loads(model_, placed);
     resultants_ = exact_resultants(scene_, at_start_.position);
-    particle_kernels_because_ = reason_for_particle_kernels(scene_);
-    model_.for_lanes = particle_kernels_because_.empty();
-    refuse_unresolved_places(scene_, model_.for_lanes);
+    why_not_lanes_ = reason_for_particle_kernels(scene_);
+    model_.for_lanes = why_not_lanes_.empty();
+    refuse_unresolved_positions(scene_, model_.for_lanes);
     use(basis_->make_particle_engine(model_));
     particles_->fill(placed);
     particles_->settle();
@@ -54,7 +54,7 @@ class SimulationOf final : public Simulation {
   double time() const override { return static_cast<double>(step_) * scene_.time.dt; }
   double load_time() const override { return load_time_at(step_); }
   int boundary_nodes() const override { return engine_->boundary_nodes(); }
-  std::string particle_kernels_because() const override { return particle_kernels_because_; }
+  std::string why_not_lanes() const override { return why_not_lanes_; }
   CutVolume cut_volume() const override { return cut_; }
   const std::vector<BodyVolume>& body_volumes() const override { return volumes_; }
   MomentFit moment_fit() const override { return moment_fit_; }
@@ -131,7 +131,7 @@ class SimulationOf final : public Simulation {
     std::vector<TractionMask> masks;
     for (size_t k = 0; k < scene_.tractions.size(); ++k) {
       const TractionMask mask = TractionMask(1) << k;
-      if ((model_.loads.on_nodes() & ~model_.loads.conservative() & mask) == 0) continue;
+      if ((model_.loads.on_nodes() & ~model_.loads.at_all_active_nodes() & mask) == 0) continue;
       masks.push_back(mask);
       auto& state = states.emplace_back();
       state.traction = k;
@@ -359,7 +359,7 @@ class SimulationOf final : public Simulation {
   OutsidePlaces outside_;  ///< of particles that stand in the grid for reading, from the local origin
   bool all_gone_ = false;  ///< these were the last, and let go
   long long step_ = 0, loads_begin_ = 0;
-  std::string particle_kernels_because_;
+  std::string why_not_lanes_;
   std::shared_ptr<Engine<Dim, Real>> engine_;             ///< with the particles
   std::shared_ptr<ParticleEngine<Dim, Real>> particles_;  ///< the same one, where it is of this kind
 };

@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
   const vsb::LinearBasis<2, double> basis{vsb::UniformGrid<2, double>({{0.3, -0.6}}, {{0.5, 0.5}}, {{7, 5}})};
   auto state = vsb::make_state(wrap(mine), basis);
   Kokkos::deep_copy(state.occupancy.tractions, vsb::TractionMask(1));  // declared everywhere
-  state.occupancy.conservative = 1;
+  state.occupancy.at_all_active_nodes = 1;
 
   // 3. Steps, as in particle_step.cpp.
   const std::vector<vsb::Body<double>> rock{

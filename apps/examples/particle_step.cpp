@@ -18,11 +18,11 @@ int main(int argc, char** argv) {
   // beside it, and no node would be a boundary node.
   const vsb::LinearBasis<2, double> basis{vsb::UniformGrid<2, double>({{1.0, 0.0}}, {{1.0, 1.0}}, {{5, 1}})};
 
-  // 3. What a step works on, and what is prescribed at the nodes: the left side is held, the sides are
+  // 3. What a step works on, and what is prescribed at the nodes: the left side is fixed, the sides are
   // rollers.
   auto state = vsb::make_state(particles, basis);
   for (int node = 0; node < basis.node_count(); ++node) {
-    // Bit i: component i is held; bit k: traction k is declared here.
+    // Bit i: component i is fixed; bit k: traction k is declared here.
     state.nodes.fixed_components(node) = basis.grid.node_position(node)[0] == 1.0 ? 3 : 2;
     state.occupancy.tractions(node) = 1;
   }

@@ -29,7 +29,7 @@ void write_each(Hdf5Writer& file, const std::string& name, size_t count, const V
 }
 
 /// The VTKHDF 1.0 group of an unstructured grid; the data of the points follow in VTKHDF/PointData.
-/// points(rows) fills the places of the points, corner(n) is entry n of the connectivity.
+/// points(rows) fills the positions of the points, corner(n) is entry n of the connectivity.
 template <class Points, class Corner>
 void write_mesh(Hdf5Writer& file, const Mesh& mesh, double time, const Points& points, const Corner& corner) {
   file.group("VTKHDF");

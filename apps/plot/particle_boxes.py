@@ -12,10 +12,10 @@ def whole_particles(amount):
     return np.abs(amount - step * values[np.argmax(count * values)]) <= 1.5 * step
 
 
-def lattice_intervals(places):
+def lattice_intervals(positions):
     """The smallest distance between coordinates along each axis; nan where there is one coordinate alone."""
     intervals = []
-    for x in places.T:
+    for x in positions.T:
         extent = max(np.ptp(x), 1e-300)
         steps = np.diff(np.unique(np.round(x / extent, 7)))
         intervals.append(steps.min() * extent if len(steps) else np.nan)

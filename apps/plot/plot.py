@@ -275,8 +275,8 @@ def draw_fields(frame, field=None):
             panel.set_title(text)
             if flat:
                 panel.yaxis.set_major_locator(plt.MaxNLocator(2 if aspect > 0.15 else 1))
-            place = dict(location="bottom", aspect=40) if flat else dict(shrink=0.9)
-            figure.colorbar(panel.collections[0], ax=panel, label=unit, pad=0.02, **place)
+            bar_options = dict(location="bottom", aspect=40) if flat else dict(shrink=0.9)
+            figure.colorbar(panel.collections[0], ax=panel, label=unit, pad=0.02, **bar_options)
     figure.suptitle(frame.title())
     return figure
 
@@ -334,24 +334,24 @@ def animate(run, field):
     if len(frames) < 2:
         sys.exit(f"plot.py: an animation needs two frames; {run.index} has {len(frames)} that are whole (for more: output.every)")
     flat = frames[0].dimension == 1
-    places, values = [], []
+    positions, values = [], []
     for frame in frames:
         frame.needs()
         of_all, unit = frame.field(field)
         keep, axes = plane_of(frame)
         values.append(of_all[keep])
-        places.append(frame.position[:, 0] if flat else rectangles(frame, keep, axes))
+        positions.append(frame.position[:, 0] if flat else rectangles(frame, keep, axes))
     factor, unit = scaled(np.concatenate(values), unit)
     values = [v / factor for v in values]
     limits = limits_of(np.concatenate(values))
-    flattened = np.concatenate([p.reshape(-1, p.shape[-1]) if p.ndim > 1 else p[:, None] for p in places])
+    flattened = np.concatenate([p.reshape(-1, p.shape[-1]) if p.ndim > 1 else p[:, None] for p in positions])
     low, high = flattened.min(axis=0), flattened.max(axis=0)
     label = f"{field} ({unit})" if unit else field
     if flat:
         figure, panel = plt.subplots(figsize=(4.6, 3), layout="constrained")
         marks, = panel.plot([], [], ".", color=OURS)
-        room = 0.05 * (limits[1] - limits[0])
-        panel.set(xlim=(low[0], high[0]), ylim=(limits[0] - room, limits[1] + room), xlabel="x (m)", ylabel=label)
+        margin = 0.05 * (limits[1] - limits[0])
+        panel.set(xlim=(low[0], high[0]), ylim=(limits[0] - margin, limits[1] + margin), xlabel="x (m)", ylabel=label)
     else:
         aspect = (high[1] - low[1]) / (high[0] - low[0])
         wide = aspect < 0.6
@@ -364,9 +364,9 @@ def animate(run, field):
 
     def show(number):
         if flat:
-            marks.set_data(places[number], values[number])
+            marks.set_data(positions[number], values[number])
         else:
-            marks.set_verts(places[number])
+            marks.set_verts(positions[number])
             marks.set_array(values[number])
         panel.set_title(f"t = {frames[number].time:.4g} s, step {frames[number].step}", fontsize=9)
 

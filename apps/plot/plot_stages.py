@@ -65,13 +65,13 @@ def title_of(number, stage, outcome, last):
 def draw_stages(run, highest):
     stages = run.stages_with_frames()
     figure, panels = plt.subplots(1, len(stages), figsize=(2.7 * len(stages) + 0.6, 3.0), layout="constrained", squeeze=False)
-    reach = 0
+    limit = 0
     for panel, (number, stage) in zip(panels[0], stages):
         part = Slice(run, panel, highest)
-        reach = max(reach, np.abs(part.show(stage["last_step"])).max())
+        limit = max(limit, np.abs(part.show(stage["last_step"])).max())
         panel.set_title(title_of(number, stage, run.outcome, number == len(run.stages)))
     for panel in panels[0]:
-        panel.set(xlim=(-1.02 * reach, 1.02 * reach), ylim=(-1.02 * reach, 1.02 * reach))
+        panel.set(xlim=(-1.02 * limit, 1.02 * limit), ylim=(-1.02 * limit, 1.02 * limit))
     figure.colorbar(part.squares, ax=panels[0], label="equivalent plastic strain", extend="max", shrink=0.8)
     name = run.directory / f"{run.name}_stages.png"
     figure.savefig(name)

@@ -91,13 +91,13 @@ class Study:
         """Whether a line is in the charts; a distribution has its zeros at the floor."""
         return (finite(line["value"]) if self.chart["distribution"] else self.value(line)) is not None
 
-    def place(self, line):
+    def abscissa(self, line):
         return self.labels.index(line["case"]) if self.labels else float(line["case"])
 
     def of(self, series, error):
         """The lines of a series for an error that have a value, along the axis."""
         found = [l for l in self.lines if l["series"] == series and l["figure"] == error and self.drawn(l)]
-        return sorted(found, key=self.place)
+        return sorted(found, key=self.abscissa)
 
     def style(self, series):
         index = self.about["series"].index(series)
@@ -174,7 +174,7 @@ def draw_errors(study):
             lines = study.of(series, error)
             shift = 0.7 * ((k + 0.5) / len(study.series) - 0.5) if study.labels else 0
             for line in lines:
-                x, y = study.place(line) + shift, study.value(line)
+                x, y = study.abscissa(line) + shift, study.value(line)
                 points.append((x, y))
                 for column, mark, size in (("expected", "s", 8), ("published", "D", 6)):
                     if study.value(line, column) is not None:
@@ -183,7 +183,7 @@ def draw_errors(study):
                                    markeredgewidth=0.8, zorder=4)
                 if line["verdict"] == "fail":
                     panel.plot(x, y, "o", color=MISSED, markerfacecolor="none", markersize=12, markeredgewidth=1.2, zorder=5)
-            panel.plot([study.place(l) + shift for l in lines], [study.value(l) for l in lines], color=colour,
+            panel.plot([study.abscissa(l) + shift for l in lines], [study.value(l) for l in lines], color=colour,
                        marker=marker, markersize=4, linewidth=1.2, linestyle="none" if study.labels else "-", zorder=3)
             found = [study.value(l, "extrapolated") for l in lines if study.value(l, "extrapolated") is not None]
             if found:  # from the last three cases
@@ -206,16 +206,16 @@ def draw_errors(study):
                 panel.set_xscale("log")
                 if log and error in study.about["errors"]:
                     draw_slopes(panel, points)
-            places = {line["case"]: float(line["case"]) for line in study.lines}
-            if len(places) <= 7:
-                panel.xaxis.set_major_locator(FixedLocator(sorted(places.values())))
+            abscissae = {line["case"]: float(line["case"]) for line in study.lines}
+            if len(abscissae) <= 7:
+                panel.xaxis.set_major_locator(FixedLocator(sorted(abscissae.values())))
                 panel.xaxis.set_minor_locator(NullLocator())
-                panel.set_xticks(sorted(places.values()), sorted(places, key=places.get))
+                panel.set_xticks(sorted(abscissae.values()), sorted(abscissae, key=abscissae.get))
             panel.margins(x=0.08)
             # All panels have the axis of the study, also where an error exists, or a scene runs, in a part of it alone.
-            span = max(places.values()) - min(places.values())
+            span = max(abscissae.values()) - min(abscissae.values())
             if not axis["log"] and span > 0:
-                panel.set_xlim(min(places.values()) - 0.06 * span, max(places.values()) + 0.06 * span)
+                panel.set_xlim(min(abscissae.values()) - 0.06 * span, max(abscissae.values()) + 0.06 * span)
         if log:
             readable(panel.yaxis)
     sloping = axis["log"] and any(study.logarithmic[e] and e in study.about["errors"] for e in study.errors)

@@ -149,14 +149,14 @@ def main():
     window.SetOffScreenRendering(1)
     window.SetMultiSamples(4)
     window.SetSize(520 * len(stages), 640)
-    for place, (number, stage) in enumerate(stages):
+    for column, (number, stage) in enumerate(stages):
         state = run.read(stage["last_step"])
         kept = ~((state.start[:, 0] > 0) & (state.start[:, 1] > 0))  # the quarter towards the eye is cut out
         state = State(*(field[kept] for field in state))
         last = number == len(run.stages) and run.outcome == "collapse"
         title = f"{number}: total failure" if last else f"{number}: {stage['rows']:.1f} rows beyond the threshold"
-        panel(window, (place / len(stages), 0, (place + 1) / len(stages), 1), title,
-              cubes(state, outer_particles(state), colours), colours if place == 0 else None)
+        panel(window, (column / len(stages), 0, (column + 1) / len(stages), 1), title,
+              cubes(state, outer_particles(state), colours), colours if column == 0 else None)
     window.Render()
     picture = vtk.vtkWindowToImageFilter()
     picture.SetInput(window)

@@ -11,7 +11,7 @@ from particle_boxes import particle_sizes
 
 FIELD = "equivalent_plastic_strain"
 
-# Of every particle: place, place at the start, equivalent plastic strain, edges of its box, mass.
+# Of every particle: position, position at the start, equivalent plastic strain, edges of its box, mass.
 State = collections.namedtuple("State", "x start strain sizes mass")
 
 

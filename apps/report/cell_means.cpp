@@ -24,7 +24,7 @@ void add_to_cells(const Basis& basis, const Snapshot& s, CellSums& cells) {
   for (size_t b = 0; b < s.bodies.size(); ++b)
     for (int n = std::max(first, s.bodies[b].first); n < std::min(last, s.bodies[b].last); ++n) {
       const auto p = static_cast<size_t>(n - first);
-      const auto x = place_of<Basis::dimension>(s.position, p);
+      const auto x = position_of<Basis::dimension>(s.position, p);
       auto& sums = cells[{basis.grid.cell_index(basis.grid.cell_containing(x)), b}];
       const double V = s.volume[p];
       sums.volume += V;

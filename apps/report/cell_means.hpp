@@ -13,8 +13,8 @@ namespace vsb::app {
 
 /// Of every cell and body that has particles there, in the order of cells, the bodies of one cell in theirs.
 struct CellMeans {
-  std::vector<double> volume;         ///< of the particles, m^3: the weight in a norm
-  std::vector<double> position;       ///< [3 per mean] mean place by volume: where the mean stress belongs, m
+  std::vector<double> volume;    ///< of the particles, m^3: the weight in a norm
+  std::vector<double> position;  ///< [3 per mean] mean position by volume: where the mean stress belongs, m
   std::vector<double> cauchy_stress;  ///< [6 per mean] mean by volume, Pa
 };
 

@@ -14,7 +14,7 @@ namespace vsb::app {
 
 namespace {
 
-/// Root mean square with weights: sqrt(sum w d^2 / sum w), the form of Eqs. (30)-(33).
+/// Root mean square with weights: sqrt(sum w d^2 / sum w), the form of Eq. (30) to Eq. (33).
 class Norm {
  public:
   void add(double difference, double weight) {
@@ -31,7 +31,7 @@ class Norm {
 using Norms = std::map<std::string, Norm>;
 using Figures = std::vector<std::pair<std::string, double>>;
 
-/// Stresses at places, each with its weight in a norm.
+/// Stresses at positions, each with its weight in a norm.
 struct Samples {
   const std::vector<double>& position;       ///< [3 per sample], m
   const std::vector<double>& cauchy_stress;  ///< [6 per sample], Pa
@@ -53,7 +53,7 @@ void store(const SymmetricTensor<2, double>& stress, std::vector<double>& to, si
   for (size_t c = 0; c < 4; ++c) to[6 * p + c] = stress[static_cast<int>(c)];
 }
 
-/// A particle's place relative to the axis of a cylinder that has been carried to where it is now.
+/// A particle's position relative to the axis of a cylinder that has been carried to where it is now.
 Vector<2, double> from_axis(const CylinderComparison& c, const std::vector<double>& position, size_t p) {
   return in_plane(position, p) - Vector<2, double>{{c.center[0] + c.moved[0], c.center[1] + c.moved[1]}};
 }
@@ -72,7 +72,7 @@ ExactEllipse<double> solution_of(const EllipseComparison& c, const Scene& scene)
           c.far_stress, c.far_ratio,  scene.bodies.front().material.poisson_ratio};
 }
 
-/// Eqs. (31), (33): stresses over the traction or the pressure.
+/// Eq. (31), Eq. (33): stresses over the traction or the pressure.
 void add_stress_errors(const ColumnComparison& c, const Scene& scene, const Samples& s, Norms& norms) {
   const auto solution = solution_of(c, scene);
   Norm& stress = norms["e_sigma"];
@@ -219,7 +219,7 @@ struct PlasticRadii {
   void add(const YieldingCylinderComparison&, const Scene&, const Snapshot& s) { zone.add(s); }
   Figures figures(const YieldingCylinderComparison& c, const Scene& scene) const {
     return {{"plastic_radius", zone.radius(c)},
-            {"plastic_reach", zone.reach(c)},
+            {"largest_plastic_radius", zone.largest_radius(c)},
             {"exact_radius", solution_of(c, scene).plastic_radius()}};
   }
 };
@@ -294,7 +294,7 @@ ExactFields exact_fields(const std::monostate&, const Scene&, const Snapshot&) {
 std::vector<std::string> comparison_figure_names(const Comparison& comparison) {
   if (std::holds_alternative<CylinderComparison>(comparison)) return {"hoop_ratio"};
   if (std::holds_alternative<YieldingCylinderComparison>(comparison))
-    return {"plastic_radius", "plastic_reach", "exact_radius"};
+    return {"plastic_radius", "largest_plastic_radius", "exact_radius"};
   return {};
 }
 

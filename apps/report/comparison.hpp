@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Particles against an exact solution: the solution at the particles, and the error norms of Eqs. (30)-(33).
+/// Particles against an exact solution: the solution at the particles, and the error norms of Eq. (30) to Eq.
+/// (33).
 #pragma once
 
 #include <string>

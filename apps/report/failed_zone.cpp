@@ -10,29 +10,29 @@ namespace vsb::app {
 
 namespace {
 
-/// Places across the hole (a, b) and along it (c), from its centre.
-struct Place {
+/// Positions across the hole (a, b) and along it (c), from its centre.
+struct Offset {
   double a, b, c;
   double radius() const { return std::hypot(a, b); }
 };
 
-/// A place on a raster of a quarter of the rows' distance, as one number: equal for places that differ by
-/// round-off alone, as mirror images do.
-std::uint64_t key(const Place& x, double row) {
+/// A position on a raster of a quarter of the rows' distance, as one number: equal for positions that differ
+/// by round-off alone, as mirror images do.
+std::uint64_t key(const Offset& x, double row) {
   const auto number = [&](double along) {
     return static_cast<std::uint64_t>(std::llround(4 * along / row) + (1 << 20)) & 0x1fffff;
   };
   return (number(x.a) << 42) | (number(x.b) << 21) | number(x.c);
 }
 
-/// The particles that are there, to be found by their place.
-class PlaceIndex {
+/// The particles that are there, to be found by their position.
+class OffsetIndex {
  public:
-  PlaceIndex(double row, size_t count) : row_(row) { keys_.reserve(count); }
-  void add(const Place& x, bool failed) { keys_.push_back(key(x, row_) << 1 | (failed ? 1u : 0u)); }
+  OffsetIndex(double row, size_t count) : row_(row) { keys_.reserve(count); }
+  void add(const Offset& x, bool failed) { keys_.push_back(key(x, row_) << 1 | (failed ? 1u : 0u)); }
   void sort() { std::sort(keys_.begin(), keys_.end()); }
   /// Whether there is a particle that has not failed.
-  bool intact(const Place& x) const {
+  bool intact(const Offset& x) const {
     return std::binary_search(keys_.begin(), keys_.end(), key(x, row_) << 1);
   }
 
@@ -47,18 +47,18 @@ FailedZone measure_failed_zone(const HoleSpec& hole, int dimension, const std::v
                                const std::vector<Fate>& fate) {
   const size_t axis = hole.axis < 0 ? 2 : static_cast<size_t>(hole.axis);
   const size_t across = (axis + 1) % 3, across2 = (axis + 2) % 3;
-  const auto place = [&](size_t p) {
-    return Place{start[p][across] - hole.center[across], start[p][across2] - hole.center[across2],
-                 dimension == 3 ? start[p][axis] - hole.center[axis] : 0.0};
+  const auto offset = [&](size_t p) {
+    return Offset{start[p][across] - hole.center[across], start[p][across2] - hole.center[across2],
+                  dimension == 3 ? start[p][axis] - hole.center[axis] : 0.0};
   };
   const auto in_rows = [&](double radius) { return (radius - hole.radius) / hole.row; };
   FailedZone zone;
   std::vector<double> radius(start.size());
   std::map<long long, long long> in_layer;
-  PlaceIndex index(hole.row, start.size());
+  OffsetIndex index(hole.row, start.size());
   size_t failed = 0, gone = 0;
   for (size_t p = 0; p < start.size(); ++p) {
-    const Place x = place(p);
+    const Offset x = offset(p);
     radius[p] = x.radius();
     const auto layer = std::llround(4 * x.c / hole.row);
     in_layer[layer] += fate[p] == Fate::failed;
@@ -77,7 +77,7 @@ FailedZone measure_failed_zone(const HoleSpec& hole, int dimension, const std::v
   size_t lopsided = 0;
   for (size_t p = 0; p < start.size(); ++p) {
     if (fate[p] != Fate::failed) continue;
-    const auto [a, b, c] = place(p);
+    const auto [a, b, c] = offset(p);
     bool image_intact = false;
     for (const double s : {1.0, -1.0})
       for (const double t : {1.0, -1.0})

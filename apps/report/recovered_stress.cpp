@@ -82,7 +82,7 @@ class Projection {
   template <class Work>
   void for_each_value(const Work& work) const {
     for (size_t p = first_; p < last_; ++p) {
-      const auto shape = basis_.shape(place_of<Basis::dimension>(s_.position, p));
+      const auto shape = basis_.shape(position_of<Basis::dimension>(s_.position, p));
       for (int a = 0; a < support; ++a)
         if (shape.N[a] > 0) work(p, row_[static_cast<size_t>(shape.node[a])], shape.N[a]);
     }
@@ -90,7 +90,7 @@ class Projection {
 
   void number_nodes() {
     for (size_t p = first_; p < last_; ++p) {
-      const auto shape = basis_.shape(place_of<Basis::dimension>(s_.position, p));
+      const auto shape = basis_.shape(position_of<Basis::dimension>(s_.position, p));
       for (int a = 0; a < support; ++a)
         if (shape.N[a] > 0) row_[static_cast<size_t>(shape.node[a])] = 0;
     }
@@ -107,14 +107,15 @@ class Projection {
     std::vector<double> value(static_cast<size_t>(rows) * neighbours, 0.0);
     std::vector<int> column(static_cast<size_t>(rows) * neighbours, -1);
     for (size_t p = first_; p < last_; ++p) {
-      const auto shape = basis_.shape(place_of<Basis::dimension>(s_.position, p));
+      const auto shape = basis_.shape(position_of<Basis::dimension>(s_.position, p));
       for (int a = 0; a < support; ++a)
         for (int b = 0; b < support; ++b) {
           if (!(shape.N[a] > 0 && shape.N[b] > 0)) continue;
           const auto row = static_cast<size_t>(row_[static_cast<size_t>(shape.node[a])]);
-          int place = 0;
-          for (int i = 0; i < Basis::dimension; ++i) place = 3 * place + 1 + (b >> i & 1) - (a >> i & 1);
-          const size_t entry = row * neighbours + static_cast<size_t>(place);
+          int neighbour = 0;
+          for (int i = 0; i < Basis::dimension; ++i)
+            neighbour = 3 * neighbour + 1 + (b >> i & 1) - (a >> i & 1);
+          const size_t entry = row * neighbours + static_cast<size_t>(neighbour);
           value[entry] += s_.volume[p] * shape.N[a] * shape.N[b];
           column[entry] = row_[static_cast<size_t>(shape.node[b])];
         }

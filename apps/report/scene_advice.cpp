@@ -16,7 +16,7 @@ namespace vsb::app {
 namespace {
 
 /// Whether a face of the grid, of any direction, holds a component of the motion.
-bool is_held(const Scene& scene, size_t component) {
+bool is_fixed(const Scene& scene, size_t component) {
   for (const auto& faces : scene.faces.fixed)
     for (const unsigned char fixed : faces)
       if (fixed >> component & 1) return true;
@@ -33,7 +33,7 @@ double largest_load(const Scene& scene) {
     for (const auto& traction : scene.tractions)
       load = std::max(load, largest_stress(traction.field, box.lower, box.upper));
     for (size_t i = 0; i < 3; ++i)
-      if (is_held(scene, i))
+      if (is_fixed(scene, i))
         load = std::max(load, body.density * std::abs(scene.gravity[i]) * (box.upper[i] - box.lower[i]));
   }
   return load;
@@ -75,7 +75,7 @@ constexpr double least_float_displacement = 3e-4;
 /// A strain by which a boundary moves through cells.
 constexpr double large_strain = 0.05;
 
-/// Whether the place of the boundary decides where a traction acts.
+/// Whether the position of the boundary decides where a traction acts.
 bool acts_on_nodes(const TractionSpec& t) {
   return t.imposition == Imposition::virtual_stress || t.imposition == Imposition::virtual_stress_original;
 }
@@ -90,7 +90,7 @@ bool moves_as_a_whole(const Scene& scene) {
   };
   if (std::any_of(scene.tractions.begin(), scene.tractions.end(), floats)) return false;
   for (size_t i = 0; i < 3; ++i)
-    if (scene.gravity[i] != 0 && !is_held(scene, i)) return true;
+    if (scene.gravity[i] != 0 && !is_fixed(scene, i)) return true;
   return false;
 }
 

@@ -68,7 +68,7 @@ std::string stage_text(const StageReport& s, int number, bool with_hole) {
   std::string text =
       fmt::format("stage {}: {} of {} particles beyond the threshold", number, s.failed, s.particles);
   if (with_hole && s.failed > 0)
-    text += fmt::format(", reach {:.2f} rows (axis {:.2f}, diagonal {:.2f}, mean {:.2f})", s.zone.rows,
+    text += fmt::format(", depth {:.2f} rows (axis {:.2f}, diagonal {:.2f}, mean {:.2f})", s.zone.rows,
                         s.zone.rows_axis, s.zone.rows_diagonal, s.zone.rows_mean);
   return text + fmt::format("; largest strain {:.3g}, yielded volume {:.4g}; {} {} steps, {}", s.largest,
                             s.yielded, s.at_rest ? "at rest after" : "not at rest after",

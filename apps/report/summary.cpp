@@ -276,7 +276,7 @@ void print_resultant(const Scene& scene, const BalanceReport& balance, const std
   if (scene.dimension > 1)
     fmt::print(
         "{}their torque about {}, the centre of mass at the start, {} N m, on the exact surface {} N m\n",
-        prefix, place_text(scene, balance.torque_about), text(balance.net_torque),
+        prefix, position_text(scene, balance.torque_about), text(balance.net_torque),
         text(balance.exact_torque));
 }
 

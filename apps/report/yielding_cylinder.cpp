@@ -33,7 +33,7 @@ double PlasticZone::radius(const YieldingCylinderComparison& c) const {
   return std::sqrt(a2 + yielded_ / all_ * (b2 - a2));
 }
 
-double PlasticZone::reach(const YieldingCylinderComparison& c) const {
+double PlasticZone::largest_radius(const YieldingCylinderComparison& c) const {
   return std::max(c.inner_radius, furthest_);
 }
 

@@ -19,7 +19,7 @@ class PlasticZone {
   /// m.
   double radius(const YieldingCylinderComparison& c) const;
   /// The radius of the particle furthest from the axis that has yielded, m; the inner radius where none has.
-  double reach(const YieldingCylinderComparison& c) const;
+  double largest_radius(const YieldingCylinderComparison& c) const;
 
  private:
   double yielded_ = 0, all_ = 0;  ///< volumes, m^3

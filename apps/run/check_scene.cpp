@@ -80,7 +80,7 @@ void check_scene(const Scene& scene, PlacedParticles* placed) {
   print_warnings(short_run_advice(scene));
   fmt::print("# {} particles, {} boundary nodes, {:.3g} MB of state\n", simulation->particle_count(),
              simulation->boundary_nodes(), static_cast<double>(simulation->state_bytes()) / 1e6);
-  const auto reason = simulation->particle_kernels_because();
+  const auto reason = simulation->why_not_lanes();
   fmt::print("# steps on {}\n", reason.empty() ? "cell lanes" : "particle kernels: " + reason);
   print_body_volumes(scene, simulation->body_volumes(), "# ");
   print_cut_volume(simulation->cut_volume(), "# ");

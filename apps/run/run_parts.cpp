@@ -34,7 +34,8 @@ std::vector<std::string> support_advice(const Scene& scene, Simulation& simulati
   if (unsupported.empty()) return {};
   return {fmt::format(
       "at the start, and at full load, {}: the body moves until something stops it, and what is then called "
-      "static is not the state at its place; hold it at a face of the grid ('faces'), or balance its loads",
+      "static is not the state at its present position; hold it at a face of the grid ('faces'), or balance "
+      "its loads",
       unsupported)};
 }
 

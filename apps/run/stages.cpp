@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "run/torn_body.hpp"
+#include "run/cut_through.hpp"
 
 namespace vsb::app {
 
@@ -169,8 +169,8 @@ std::string Stages::collapse_of(const std::vector<unsigned char>& failed) const 
   if (removal_.hole && !scene_.grid.mapped() &&
       hole_meets_outside(scene_, *removal_.hole, simulation_.cell_contents(failed)))
     return fmt::format(
-        "the body is torn: failed cells join the hole and the outside ({:.3g} % of the particles that were "
-        "left are beyond the threshold)",
+        "the body is cut through: failed cells join the hole and the outside ({:.3g} % of the particles that "
+        "were left are beyond the threshold)",
         100 * share);
   return {};
 }

@@ -77,8 +77,8 @@ struct ComparisonChecker {
   }
   void operator()(const CylinderComparison& c) const {
     ring(c);
-    for (const Point& place : {c.center, c.moved})
-      for (const double x : place) any("a coordinate", x);
+    for (const Point& point : {c.center, c.moved})
+      for (const double x : point) any("a coordinate", x);
   }
   void operator()(const YieldingCylinderComparison& c) const { ring(c); }
   void operator()(const EllipseComparison& c) const {

@@ -10,7 +10,7 @@
 
 namespace vsb::app {
 
-Point place(const GridSpec& grid, const Point& q) {
+Point position_of(const GridSpec& grid, const Point& q) {
   if (!grid.polar) return q;
   double cosine = std::cos(q[1]), sine = std::sin(q[1]);
   // Nodes at a multiple of 90 degrees lie on the axis itself, where symmetry planes and surfaces are.
@@ -44,7 +44,7 @@ Point node_position(const GridSpec& grid, int dimension, const std::array<int, 3
   for (size_t i = 0; i < static_cast<size_t>(dimension); ++i)
     q[i] = grid.mapped() ? grid.coordinates[i][static_cast<size_t>(ijk[i])]
                          : grid.lower[i] + static_cast<double>(ijk[i]) * grid.spacing[i];
-  return grid.mapped() ? place(grid, q) : q;
+  return grid.mapped() ? position_of(grid, q) : q;
 }
 
 double shortest_edge(const GridSpec& grid, int dimension) {
@@ -111,7 +111,7 @@ CellShare cell_share(const GridSpec& grid, int dimension, const std::array<int, 
     volume *= q[0];
     edges[1] *= q[0];
   }
-  return {place(grid, q), volume, edges};
+  return {position_of(grid, q), volume, edges};
 }
 
 }  // namespace vsb::app

@@ -28,9 +28,9 @@ struct GridSpec {
   std::string axis_name(size_t axis) const;
 };
 
-/// The place of coordinates along the logical axes (r in m, theta in radians on a polar grid), and back; the
-/// angle is the one nearest to the grid's.
-Point place(const GridSpec& grid, const Point& q);
+/// The position of coordinates along the logical axes (r in m, theta in radians on a polar grid), and back;
+/// the angle is the one nearest to the grid's.
+Point position_of(const GridSpec& grid, const Point& q);
 Point logical_coordinates(const GridSpec& grid, const Point& x);
 
 /// First and last node coordinate along a logical axis.

@@ -92,7 +92,7 @@ struct Key {
   std::string sentence;              ///< what it means
   const KeyTable* inside = nullptr;  ///< the table that is its value, or that its value may be
 
-  /// Enters the key in its table, the declaration's place being that of the reference.
+  /// Enters the key in its table, the declaration's position being that of the reference.
   Key(KeyTable& in, std::string key_name, std::string key_type, std::string key_preset, std::string key_unit,
       std::string key_sentence, const KeyTable* key_inside = nullptr);
 

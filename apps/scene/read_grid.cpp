@@ -187,10 +187,10 @@ GridSpec read_grid(TableReader r, int dimension) {
   GridSpec grid = polar         ? read_polar(r, dimension)
                   : rectilinear ? read_rectilinear(r, dimension)
                                 : read_uniform(r, dimension);
-  const Key& place = polar         ? static_cast<const Key&>(keys.polar)
-                     : rectilinear ? static_cast<const Key&>(keys.x)
-                                   : keys.lower;
-  refuse_coarse_coordinates(r, place, grid, dimension);
+  const Key& coordinates = polar         ? static_cast<const Key&>(keys.polar)
+                           : rectilinear ? static_cast<const Key&>(keys.x)
+                                         : keys.lower;
+  refuse_coarse_coordinates(r, coordinates, grid, dimension);
   r.finish();
   return grid;
 }

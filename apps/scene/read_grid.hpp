@@ -73,7 +73,7 @@ struct FaceKey : ChoiceKey {
                    {"outflow", "open, and particles that pass it are removed"},
                    {"roller", "no normal velocity; not for faces of constant r or theta"},
                    {"fixed", "no velocity"}},
-                  first_word, "an array names the components held at zero, such as [\"x\", \"y\"]") {
+                  first_word, "an array names the components fixed at zero, such as [\"x\", \"y\"]") {
     type += ", or an array of components";
   }
 };

@@ -79,13 +79,13 @@ HydrostaticSpec read_hydrostatic(TableReader r, const Scene& scene) {
   return h;
 }
 
-/// One end of a blend: its place, and the stress there.
-template <class Keys, class Place>
-void read_blend_end(TableReader& r, const Key& key, const Keys& keys, const char* place,
-                    const Place& read_place, Stress6& stress) {
-  if (!r.has(key)) r.missing(key, fmt::format("a table with {}, and pressure or stress", place));
+/// One end of a blend: its position, and the stress there.
+template <class Keys, class Position>
+void read_blend_end(TableReader& r, const Key& key, const Keys& keys, const char* coordinates,
+                    const Position& read_position, Stress6& stress) {
+  if (!r.has(key)) r.missing(key, fmt::format("a table with {}, and pressure or stress", coordinates));
   TableReader t = r.table(key);
-  read_place(t, keys);
+  read_position(t, keys);
   stress = read_stress(t, keys.uniform);
   t.finish();
 }

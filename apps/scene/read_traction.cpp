@@ -26,7 +26,7 @@ void read_nodes(TableReader& r, const Scene& scene, TractionSpec& traction) {
              "is for free bodies: a part that ends at a symmetry plane or a support has a resultant");
 }
 
-/// Whether a surface is one of places, or of the material that was there at the start; points and loaded
+/// Whether a surface is fixed in space, or one of the material that was there at the start; points and loaded
 /// faces of cells belong to the surface of the start.
 void read_configuration(TableReader& r, TractionSpec& traction) {
   const auto& key = traction_keys.configuration;

@@ -20,8 +20,8 @@ struct TractionKeys : KeyTable {
   ChoiceKeyOf<Imposition> imposition{
       *this,
       "imposition",
-      {{"virtual_stress", Imposition::virtual_stress, "the modified method, Eqs. (27), (28)"},
-       {"virtual_stress_original", Imposition::virtual_stress_original, "Eqs. (21), (22)"},
+      {{"virtual_stress", Imposition::virtual_stress, "the modified method, Eq. (27), Eq. (28)"},
+       {"virtual_stress_original", Imposition::virtual_stress_original, "Eq. (21), Eq. (22)"},
        {"boundary_particles", Imposition::boundary_particles, "massless particles on the surface, Eq. (13)"},
        {"material_points", Imposition::material_points, "the outermost layer of particles, Eq. (12)"},
        {"nodal", Imposition::nodal, "the nodes of a boundary that the grid follows"}},

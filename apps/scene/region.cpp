@@ -48,12 +48,12 @@ Overlap complement(Overlap overlap) {
   return overlap == Overlap::all ? Overlap::none : overlap == Overlap::none ? Overlap::all : Overlap::some;
 }
 
-/// center +- reach in the first `dimension` coordinates.
-AxisBox box_about(int dimension, const Point& center, const Point& reach) {
+/// center +- half_widths in the first `dimension` coordinates.
+AxisBox box_about(int dimension, const Point& center, const Point& half_widths) {
   AxisBox box = all_space;
   for (size_t i = 0; i < static_cast<size_t>(dimension); ++i) {
-    box.lower[i] = center[i] - reach[i];
-    box.upper[i] = center[i] + reach[i];
+    box.lower[i] = center[i] - half_widths[i];
+    box.upper[i] = center[i] + half_widths[i];
   }
   return box;
 }

@@ -52,8 +52,8 @@ inline bool is_irregular(const BodySpec& body) {
 
 /// How a traction becomes nodal forces.
 enum class Imposition {
-  virtual_stress,           ///< modified virtual stress boundary, Eqs. (27), (28)
-  virtual_stress_original,  ///< original virtual stress boundary, Eqs. (21), (22)
+  virtual_stress,           ///< modified virtual stress boundary, Eq. (27), Eq. (28)
+  virtual_stress_original,  ///< original virtual stress boundary, Eq. (21), Eq. (22)
   boundary_particles,       ///< massless particles on the surface, Eq. (13)
   material_points,          ///< the outermost layer of particles, Eq. (12)
   nodal                     ///< the nodes of a boundary that the grid follows

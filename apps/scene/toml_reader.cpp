@@ -132,7 +132,7 @@ std::string ResolvedTable::toml(const std::string& prefix) const {
 
 TableReader::TableReader(const toml::table& table, std::string path, ResolvedTable& resolved,
                          const KeyTable& keys, const KeyList& left_out)
-    : table_(&table), place_(&table), path_(std::move(path)), resolved_(&resolved), keys_(&keys) {
+    : table_(&table), location_(&table), path_(std::move(path)), resolved_(&resolved), keys_(&keys) {
   if (keys.is_open()) return;
   KeyList allowed;
   std::copy_if(keys.keys().begin(), keys.keys().end(), std::back_inserter(allowed), [&](const Key* key) {
@@ -171,10 +171,10 @@ void TableReader::fail(const Key& key, const std::string& what) const {
 }
 
 void TableReader::missing(const Key& key, const std::string& what) const {
-  const auto& source = place_->source();
+  const auto& source = location_->source();
   const bool in_file = static_cast<bool>(source.begin) || !source.path;
-  throw SceneError(
-      fmt::format("{}: {} is missing: {}", in_file ? location(*place_) : *source.path, name(key.name), what));
+  throw SceneError(fmt::format("{}: {} is missing: {}", in_file ? location(*location_) : *source.path,
+                               name(key.name), what));
 }
 
 void TableReader::record(const Key& key, const std::string& text, const std::string& remark) {
@@ -381,7 +381,7 @@ TableReader TableReader::table(const Key& key, const KeyList& left_out) {
   resolved_->children.push_back({key_text(key.name), false, std::make_unique<ResolvedTable>()});
   TableReader reader(node ? *node->as_table() : empty, name(key.name), *resolved_->children.back().table,
                      *key.inside, left_out);
-  if (!node) reader.place_ = place_;
+  if (!node) reader.location_ = location_;
   return reader;
 }
 
@@ -418,7 +418,7 @@ void TableReader::unknown(const toml::key& key, const toml::node& value,
 }
 
 void TableReader::refuse_empty(const std::string& what) const {
-  if (place_ != table_ || !table_->empty()) return;  // an absent table is not written
+  if (location_ != table_ || !table_->empty()) return;  // an absent table is not written
   throw SceneError(fmt::format("{}: {} = {{}}: must be {}", location(*table_), path_, what));
 }
 

@@ -109,7 +109,7 @@ class TableReader {
                             std::vector<std::string> known) const;
 
   const toml::table* table_;
-  const toml::table* place_;  ///< where its keys would be: itself, or the nearest table that is written
+  const toml::table* location_;  ///< where its keys would be: itself, or the nearest table that is written
   std::string path_;
   ResolvedTable* resolved_;
   const KeyTable* keys_;

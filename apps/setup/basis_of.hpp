@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The basis functions of a scene, with the memory they need, on the backend of this build. Bases with reach
-/// get a grid with a layer of ghost cells around that of the scene. Places are counted from an origin in the
-/// scene's coordinates (setup/local_origin.hpp).
+/// The basis functions of a scene, with the memory they need, on the backend of this build. Bases with ghost
+/// layers get a grid with a layer of ghost cells around that of the scene. Positions are counted from an
+/// origin in the scene's coordinates (setup/local_origin.hpp).
 #pragma once
 
 #include <vsb/kernels/mesh/make_mapped_mesh.hpp>
@@ -92,9 +92,9 @@ struct OwnedBasis<MappedLinearBasis<Dim, Real>, Device> {
     return make_mapped_mesh<Real, Device>(cells, [&](const Vector<Dim, int>& ijk) {
       std::array<int, 3> logical{};
       for (int i = 0; i < Dim; ++i) logical[static_cast<size_t>(i)] = ijk[i];
-      const Point place = node_position(spec, Dim, logical);
+      const Point position = node_position(spec, Dim, logical);
       Vector<Dim, double> x;
-      for (int i = 0; i < Dim; ++i) x[i] = place[static_cast<size_t>(i)] - origin[static_cast<size_t>(i)];
+      for (int i = 0; i < Dim; ++i) x[i] = position[static_cast<size_t>(i)] - origin[static_cast<size_t>(i)];
       return x;
     });
   }

@@ -86,8 +86,9 @@ struct IntervalBlock {
 
 /// The intervals that the surface may cross, along x first: blocks of them are halved until they lie in the
 /// region as a whole, not at all, or are one interval. The work follows the surface, not the grid.
-template <class Place>
-std::vector<Interval> crossed_intervals(const Region& region, const SurfaceBox& box, const Place& place) {
+template <class Position>
+std::vector<Interval> crossed_intervals(const Region& region, const SurfaceBox& box,
+                                        const Position& position) {
   const auto d = static_cast<size_t>(box.dimension);
   IntervalBlock all{{0, 0, 0}, {1, 1, 1}};
   for (size_t i = 0; i < d; ++i) all.last[i] = static_cast<size_t>(box.intervals[i]);
@@ -96,7 +97,7 @@ std::vector<Interval> crossed_intervals(const Region& region, const SurfaceBox& 
   while (!blocks.empty()) {
     const auto [block, parts] = std::move(blocks.back());
     blocks.pop_back();
-    AxisBox around{place(block.first), place(block.last)};
+    AxisBox around{position(block.first), position(block.last)};
     for (size_t i = 0; i < d; ++i) {  // the surface may lie in the face of an interval
       around.lower[i] -= 1e-3 * box.interval[i];
       around.upper[i] += 1e-3 * box.interval[i];
@@ -126,20 +127,20 @@ std::vector<Interval> crossed_intervals(const Region& region, const SurfaceBox& 
 
 std::vector<SurfacePiece> surface_pieces(const Region& region, const SurfaceBox& box) {
   const auto d = static_cast<size_t>(box.dimension);
-  const auto place = [&](const Interval& ijk) {
+  const auto position = [&](const Interval& ijk) {
     Point x{};
     for (size_t i = 0; i < d; ++i) x[i] = box.lower[i] + static_cast<double>(ijk[i]) * box.interval[i];
     return x;
   };
   // Kuhn's triangulation: one simplex for each order of the axes; neighbouring intervals fit together.
   std::vector<SurfacePiece> pieces;
-  for (const Interval& at : crossed_intervals(region, box, place)) {
+  for (const Interval& at : crossed_intervals(region, box, position)) {
     bool is_inside[8];  // [corner]: bit i: upper in direction i
     bool mixed = false;
     for (size_t corner = 0; corner < size_t(1) << d; ++corner) {
       auto c = at;
       for (size_t i = 0; i < d; ++i) c[i] += corner >> i & 1;
-      is_inside[corner] = region(place(c));
+      is_inside[corner] = region(position(c));
       mixed = mixed || is_inside[corner] != is_inside[0];
     }
     if (!mixed) continue;
@@ -154,7 +155,7 @@ std::vector<SurfacePiece> surface_pieces(const Region& region, const SurfaceBox&
           ++c[order[k - 1]];
           corner |= size_t(1) << order[k - 1];
         }
-        (is_inside[corner] ? inside : outside).push_back(place(c));
+        (is_inside[corner] ? inside : outside).push_back(position(c));
       }
       if (!inside.empty() && !outside.empty()) cut_simplex(region, inside, outside, pieces);
     } while (std::next_permutation(order.begin(), order.end()));

@@ -11,7 +11,7 @@ constexpr double round_off = 1e-9;  // of the box: faces that coincide but for t
 
 constexpr BoxMoments moments_of_whole{1, 1. / 2, 1. / 2, 1. / 4, 1. / 2, 1. / 4, 1. / 4, 1. / 8};
 
-/// A box with its sampling lines. Places are given in shares of the box's edges.
+/// A box with its sampling lines. Positions are given in shares of the box's edges.
 class SampledBox {
  public:
   SampledBox(const Region& region, const AxisBox& box, int dimension)
@@ -45,27 +45,27 @@ class SampledBox {
   /// Sample k of a line: its begin, the middles of n intervals, its end.
   double sample(size_t k) const { return k == 0 ? 0 : k == n_ + 1 ? 1 : middle(k - 1); }
 
-  /// The place of a line along an axis.
+  /// The position of a line along an axis.
   Point line_of(size_t axis, size_t line) const {
-    Point place{0.5, 0.5, 0.5};
-    for (size_t k = 1; k < d_; ++k, line /= n_) place[(axis + k) % d_] = middle(line % n_);
-    return place;
+    Point local{0.5, 0.5, 0.5};
+    for (size_t k = 1; k < d_; ++k, line /= n_) local[(axis + k) % d_] = middle(line % n_);
+    return local;
   }
 
-  bool inside(Point place, size_t axis, double along) const {
-    place[axis] = along;
+  bool inside(Point local, size_t axis, double along) const {
+    local[axis] = along;
     Point x{};
-    for (size_t i = 0; i < d_; ++i) x[i] = box_.lower[i] + place[i] * (box_.upper[i] - box_.lower[i]);
+    for (size_t i = 0; i < d_; ++i) x[i] = box_.lower[i] + local[i] * (box_.upper[i] - box_.lower[i]);
     return region_(x);
   }
 
   size_t count_crossings(size_t axis, bool& any, bool& all) const {
     size_t crossings = 0;
     for (size_t line = 0; line < lines(); ++line) {
-      const Point place = line_of(axis, line);
+      const Point local = line_of(axis, line);
       bool before = false;
       for (size_t k = 0; k < n_ + 2; ++k) {
-        const bool now = inside(place, axis, sample(k));
+        const bool now = inside(local, axis, sample(k));
         any = any || now;
         all = all && now;
         if (k > 0 && now != before) ++crossings;
@@ -75,20 +75,20 @@ class SampledBox {
     return crossings;
   }
 
-  void add(Point place, size_t axis, BoxMoments& sum) const {
+  void add(Point local, size_t axis, BoxMoments& sum) const {
     const auto add_interval = [&](double from, double to) {
-      place[axis] = 0.5 * (from + to);
-      for (size_t k = 0; k < size_t(1) << d_; ++k) sum[k] += (to - from) * value_of_product(k, place);
+      local[axis] = 0.5 * (from + to);
+      for (size_t k = 0; k < size_t(1) << d_; ++k) sum[k] += (to - from) * value_of_product(k, local);
     };
     double begin = 0;
-    bool before = inside(place, axis, 0);
+    bool before = inside(local, axis, 0);
     for (size_t k = 1; k < n_ + 2; ++k) {
-      const bool now = inside(place, axis, sample(k));
+      const bool now = inside(local, axis, sample(k));
       if (now != before) {
         double same = sample(k - 1), other = sample(k);
         for (int step = 0; step < 40; ++step) {
           const double between = 0.5 * (same + other);
-          (inside(place, axis, between) == before ? same : other) = between;
+          (inside(local, axis, between) == before ? same : other) = between;
         }
         if (before) add_interval(begin, 0.5 * (same + other));
         begin = 0.5 * (same + other);

@@ -31,11 +31,11 @@ struct BoxShare {
 /// its lower corner, divided by the box's volume. Product k has coordinate i where bit i of k is set.
 using BoxMoments = std::array<double, 8>;
 
-/// Product k of the coordinates of a place.
-inline double value_of_product(size_t k, const Point& place) {
+/// Product k of the coordinates of a position.
+inline double value_of_product(size_t k, const Point& local) {
   double value = 1;
   for (size_t i = 0; i < 3; ++i)
-    if (k >> i & 1) value *= place[i];
+    if (k >> i & 1) value *= local[i];
   return value;
 }
 

@@ -51,7 +51,8 @@ void check_tractions(const Scene& scene, const Basis& basis, const Occupancy<Dev
     const TractionMask own = carried.empty() ? 0 : carried[p];
     for (int a = 0; a < Basis::support; ++a) {
       const auto ijk = basis.grid.node_ijk(shape.node[a]);
-      if (own == 0 && (declared(static_cast<size_t>(shape.node[a])) & ~loads.conservative()) == 0) continue;
+      if (own == 0 && (declared(static_cast<size_t>(shape.node[a])) & ~loads.at_all_active_nodes()) == 0)
+        continue;
       for (int i = 0; i < Dim; ++i) {
         const auto& faces = scene.faces.fixed[static_cast<size_t>(i)];
         const bool lower = ijk[i] == 0 && faces[0] == 0,
@@ -81,7 +82,7 @@ std::string text(const Scene& scene, const UnsupportedLoad<Dim>& load) {
   return fmt::format(
       "no support takes up a force of ({}) N{} on the body around {}, {:.2g} of its nodal forces",
       list(load.force), Dim > 1 ? fmt::format(" and a torque of ({}) N m", list(load.torque)) : "",
-      place_text(scene, to_scene(load.middle, local_origin(scene)), 4), load.share);
+      position_text(scene, to_scene(load.middle, local_origin(scene)), 4), load.share);
 }
 
 /// Throws SetupError for a load of a static solution that nothing takes up.

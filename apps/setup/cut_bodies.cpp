@@ -64,7 +64,7 @@ bool endless(const Scene& scene, const BodySpec& body, Point q, const Face& face
   const double far = 1e6 * (high - low);
   if (scene.grid.polar && face.axis == 0 && face.side == 0) return false;
   q[face.axis] += face.side == 0 ? -far : far;
-  return body.region(place(scene.grid, q));
+  return body.region(position_of(scene.grid, q));
 }
 
 [[noreturn]] void throw_cut_off(const Scene& scene, const BodySpec& body, const Face& face, const Point& x) {
@@ -75,7 +75,8 @@ bool endless(const Scene& scene, const BodySpec& body, Point q, const Face& face
           "be cut off "
           "there: make the grid larger or the body smaller, or, for a symmetry plane or a support, give the "
           "face a condition",
-          body.name, scene.grid.axis_name(face.axis), face.side == 0 ? "min" : "max", place_text(scene, x)));
+          body.name, scene.grid.axis_name(face.axis), face.side == 0 ? "min" : "max",
+          position_text(scene, x)));
 }
 
 /// Whether the body's bounds lie within every open face of the grid.

@@ -74,7 +74,7 @@ class ShareVisitor {
 
  private:
   /// Whether the surface cuts one of the halves of neighbours that touch a box. Where large and small shares
-  /// meet, the sum over particles is a poor integral; that place must lie off the boxes that the surface
+  /// meet, the sum over particles is a poor integral; that position must lie off the boxes that the surface
   /// cuts.
   bool touches_cut_half(const AxisBox& box) const {
     const auto d = static_cast<size_t>(dimension_);

@@ -7,10 +7,10 @@ namespace vsb::app {
 
 namespace {
 
-/// Of a place from a face, in units of the edge of a box that stands on it, or in the row above.
+/// Of a position from a face, in units of the edge of a box that stands on it, or in the row above.
 constexpr double round_off = 2e-3;
 
-/// The place of x along an axis, m, and those of the faces; around a polar grid, of the arc through x.
+/// The position of x along an axis, m, and those of the faces; around a polar grid, of the arc through x.
 struct Along {
   double x, low, high;
 };

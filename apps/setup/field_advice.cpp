@@ -134,7 +134,7 @@ std::vector<std::string> field_advice(const Scene& scene, const PlacedParticles&
       advice.push_back(fmt::format(
           "traction '{}': its stress jumps inside the material by {:.3g} Pa at {}, which acts as a traction "
           "there: let it change over several particles, or move the change out of the material",
-          traction.name, spurious.size, place_text(scene, spurious.position, 4)));
+          traction.name, spurious.size, position_text(scene, spurious.position, 4)));
     break;
   }
   if (const auto wall = thin_wall(scene, grid); wall.cells > 0)
@@ -142,7 +142,7 @@ std::vector<std::string> field_advice(const Scene& scene, const PlacedParticles&
         "the wall at {} is {} cell{} thick between faces with different tractions, whose boundary nodes meet "
         "inside it; about {} are needed: refine the grid, or use a blend (radial_blend, planar_blend) with "
         "nodes = \"all\"",
-        place_text(scene, wall.position, 4), wall.cells, wall.cells == 1 ? "" : "s", ThinWall::enough));
+        position_text(scene, wall.position, 4), wall.cells, wall.cells == 1 ? "" : "s", ThinWall::enough));
   return advice;
 }
 

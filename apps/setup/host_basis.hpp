@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The multilinear basis of a scene's grid for work on the host, such as on a snapshot, whose places are
+/// The multilinear basis of a scene's grid for work on the host, such as on a snapshot, whose positions are
 /// those of the scene.
 #pragma once
 
@@ -30,9 +30,9 @@ void with_host_basis(const Scene& scene, const Work& work) {
   }
 }
 
-/// Where particle p of an array of places (3 per particle) is.
+/// Where particle p of an array of positions (3 per particle) is.
 template <int Dim>
-Vector<Dim, double> place_of(const std::vector<double>& position, size_t p) {
+Vector<Dim, double> position_of(const std::vector<double>& position, size_t p) {
   Vector<Dim, double> x;
   for (int i = 0; i < Dim; ++i) x[i] = position[3 * p + static_cast<size_t>(i)];
   return x;

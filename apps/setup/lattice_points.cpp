@@ -104,11 +104,11 @@ LatticeRange cells_around(const GridSpec& grid, int dimension, const AxisBox& bo
       add_cells(grid.coordinates[i], low, high, range.first[i], range.last[i]);
       continue;
     }
-    const double reach = grid.coordinates[0].back();
+    const double radius = grid.coordinates[0].back();
     AxisBox box = bounds;
     for (size_t c = 0; c < 2; ++c) {
-      box.lower[c] = std::max(box.lower[c], grid.center[c] - reach);
-      box.upper[c] = std::min(box.upper[c], grid.center[c] + reach);
+      box.lower[c] = std::max(box.lower[c], grid.center[c] - radius);
+      box.upper[c] = std::min(box.upper[c], grid.center[c] + radius);
     }
     const Sector sector = sector_of(box, grid.center);
     for (int turn = -3; turn <= 3; ++turn)  // angles of a grid are between -2 pi and 2 pi

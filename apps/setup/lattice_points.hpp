@@ -31,8 +31,8 @@ struct LatticePoint {
 
 /// Visits the lattice points of a body in a fixed order: for cell and uniform lattices those in the box of
 /// the grid and in the body's bounds, along x first; for concentric ones all, along the angle first, then
-/// ring by ring and layer by layer. A point's shift depends on its place in the lattice and the seed alone,
-/// not on the points visited before.
+/// ring by ring and layer by layer. A point's shift depends on its position in the lattice and the seed
+/// alone, not on the points visited before.
 void for_each_lattice_point(const Scene& scene, const BodySpec& body,
                             const std::function<void(const LatticePoint&)>& visit);
 

@@ -70,9 +70,9 @@ Point force_on(const Stress6& s, const Point& area) {
 
 template <int Dim>
 Stress6 stress_at(const Scene& scene, const TractionSpec& traction, const Point& x) {
-  Vector<Dim, double> place;
-  for (size_t i = 0; i < Dim; ++i) place[static_cast<int>(i)] = x[i];
-  const auto s = stress_field<Dim, double>(scene, traction.field).at(place).stress;
+  Vector<Dim, double> position;
+  for (size_t i = 0; i < Dim; ++i) position[static_cast<int>(i)] = x[i];
+  const auto s = stress_field<Dim, double>(scene, traction.field).at(position).stress;
   Stress6 stress{};
   for (size_t c = 0; c < SymmetricTensor<Dim, double>::size; ++c) stress[c] = s[static_cast<int>(c)];
   return stress;
@@ -130,8 +130,8 @@ std::vector<LoadedPoint> loaded_points(const Scene& scene, const PlacedParticles
       });
     if (traction.imposition == Imposition::material_points) {
       const double largest = *std::max_element(placed.volume.begin(), placed.volume.end());
-      const double reach = 4 * std::pow(largest, 1.0 / scene.dimension);
-      const NearestParticle nearest(placed, traction.layer, reach);
+      const double search_radius = 4 * std::pow(largest, 1.0 / scene.dimension);
+      const NearestParticle nearest(placed, traction.layer, search_radius);
       std::map<int, Point> area;
       for_each_piece(scene, k, [&](const SurfacePiece& piece) {
         const int p = nearest(piece.position);
@@ -140,7 +140,7 @@ std::vector<LoadedPoint> loaded_points(const Scene& scene, const PlacedParticles
                            fmt::format("traction '{}' has no material point within {:.6g} m of {} "
                                        "on its surface: "
                                        "check its 'layer'",
-                                       traction.name, reach, place_text(scene, piece.position)));
+                                       traction.name, search_radius, position_text(scene, piece.position)));
         for (size_t i = 0; i < 3; ++i) area[p][i] += piece.area[i];
       });
       for (const auto& [p, sum] : area)

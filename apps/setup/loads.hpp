@@ -58,7 +58,7 @@ StressField<Dim, Real> stress_field(const Scene& scene, const StressFieldSpec& s
 template <int Dim, class Real>
 class Loads {
  public:
-  /// Places are counted from `origin`.
+  /// Positions are counted from `origin`.
   Loads(const Scene& scene, const Point& origin)
       : on_nodes_(imposed_by(scene, Imposition::virtual_stress) |
                   imposed_by(scene, Imposition::virtual_stress_original)),
@@ -72,7 +72,7 @@ class Loads {
         all_uniform_ = false;
         all_affine_ = all_affine_ && fields_.field[k].is_affine();
       }
-      if (traction.all_nodes) conservative_ |= TractionMask(1) << k;
+      if (traction.all_nodes) at_all_active_nodes_ |= TractionMask(1) << k;
       if (traction.self_balanced) balanced_ |= TractionMask(1) << k;
     }
   }
@@ -80,7 +80,7 @@ class Loads {
   /// The tractions that act through nodes, by the virtual stress method.
   TractionMask on_nodes() const { return on_nodes_; }
   /// Of these, the ones that act at all active nodes.
-  TractionMask conservative() const { return conservative_; }
+  TractionMask at_all_active_nodes() const { return at_all_active_nodes_; }
 
   void set_time(const Scene& scene, double t) {
     set_factors(scene, [&](const TractionSpec& traction) { return traction.time(t); });
@@ -176,7 +176,7 @@ class Loads {
       if ((modified() >> k & 1u) == 0) work(k);
   }
 
-  TractionMask on_nodes_, original_, conservative_ = 0, balanced_ = 0;
+  TractionMask on_nodes_, original_, at_all_active_nodes_ = 0, balanced_ = 0;
   int gauss_points_;
   bool all_uniform_ = true, all_affine_ = true;
   UniformVirtualStress<Dim, Real> uniform_{};
@@ -250,7 +250,7 @@ std::vector<LoadedPoint> conforming_points(const Scene& scene, const Grid& grid,
     return static_cast<bool>(occupied[static_cast<size_t>(index)]);
   };
   const Point origin = local_origin(scene);
-  const auto place = [&](const Vector<Dim, int>& ijk) {
+  const auto point_of = [&](const Vector<Dim, int>& ijk) {
     return to_scene(grid.node_position(grid.node_index(ijk)), origin);
   };
   constexpr int corners = 1 << (Dim - 1);
@@ -274,7 +274,7 @@ std::vector<LoadedPoint> conforming_points(const Scene& scene, const Grid& grid,
           ijk[axis] += side;
           for (int k = 1; k < Dim; ++k) ijk[(axis + k) % Dim] += c >> (k - 1) & 1;
           node[c] = grid.node_index(ijk);
-          x[c] = place(ijk);
+          x[c] = point_of(ijk);
           common &= tractions_at(scene, common, x[c]);
         }
         if (common == 0) continue;
@@ -300,7 +300,7 @@ std::vector<LoadedPoint> conforming_points(const Scene& scene, const Grid& grid,
   std::vector<LoadedPoint> points;
   for (const auto& [node, by_tractions] : area)
     for (const auto& [tractions, sum] : by_tractions)
-      points.push_back({place(grid.node_ijk(node)), sum, tractions, carried_by_none});
+      points.push_back({point_of(grid.node_ijk(node)), sum, tractions, carried_by_none});
   return points;
 }
 

@@ -13,13 +13,14 @@ namespace vsb::app {
 
 namespace {
 
-/// Round-off of a place in single precision, in cells, up to which steps are of use. Measured on a column of
-/// 16 cells that settles by 0.023 cells under its own weight, at the far end of longer and longer grids,
-/// beside double precision. Particle kernels add what a particle moves in a step to its place: the settlement
-/// is off by 0.6, 1.9, 1.7, 31 and 40 % with 240, 840 (the limit), 1680, 3360 and 6720 cells, and with 16800
-/// nothing settles. Lanes add it to the place in the cell: the stress is off by 3e-6 at any length, and the
-/// settlement by what a frame can tell, 0.1, 0.4 and 0.6 % with 840, 3360 and 16800 (the limit) cells.
-constexpr double coarsest_place = 5e-5, coarsest_place_on_lanes = 1e-3;
+/// Round-off of a position in single precision, in cells, up to which steps are of use. Measured on a column
+/// of 16 cells that settles by 0.023 cells under its own weight, at the far end of longer and longer grids,
+/// beside double precision. Particle kernels add what a particle moves in a step to its position: the
+/// settlement is off by 0.6, 1.9, 1.7, 31 and 40 % with 240, 840 (the limit), 1680, 3360 and 6720 cells, and
+/// with 16800 nothing settles. Lanes add it to the position in the cell: the stress is off by 3e-6 at any
+/// length, and the settlement by what a frame can tell, 0.1, 0.4 and 0.6 % with 840, 3360 and 16800 (the
+/// limit) cells.
+constexpr double coarsest_position = 5e-5, coarsest_position_on_lanes = 1e-3;
 
 }  // namespace
 
@@ -62,7 +63,7 @@ StressFieldSpec seen_from(const Point& origin, const StressFieldSpec& field) {
       field);
 }
 
-std::string place_text(const Scene& scene, const Point& x, int digits) {
+std::string position_text(const Scene& scene, const Point& x, int digits) {
   const auto box = bounding_box(scene.grid, scene.dimension);
   const double h = shortest_edge(scene.grid, scene.dimension);
   std::string text;
@@ -74,11 +75,11 @@ std::string place_text(const Scene& scene, const Point& x, int digits) {
   return "(" + text + ") m";
 }
 
-void refuse_unresolved_places(const Scene& scene, bool on_cell_lanes) {
+void refuse_unresolved_positions(const Scene& scene, bool on_cell_lanes) {
   if (!scene.single_precision) return;
   const Point origin = local_origin(scene);
   const auto box = bounding_box(scene.grid, scene.dimension);
-  const double limit = on_cell_lanes ? coarsest_place_on_lanes : coarsest_place;
+  const double limit = on_cell_lanes ? coarsest_position_on_lanes : coarsest_position;
   for (size_t i = 0; i < static_cast<size_t>(scene.dimension); ++i) {
     const double farthest = std::max(std::abs(box.lower[i] - origin[i]), std::abs(box.upper[i] - origin[i]));
     const double h = scene.grid.spacing[i];
@@ -86,7 +87,7 @@ void refuse_unresolved_places(const Scene& scene, bool on_cell_lanes) {
     if (coarseness <= limit) continue;
     throw SetupError(fmt::format(
         "precision = \"float\" does not resolve this grid: along {} it goes up to {:.6g} m, {:.6g} cells of "
-        "{:.6g} m, where the round-off of a place is {:.2g} cells, and {:g} is what steps on {} bear; use "
+        "{:.6g} m, where the round-off of a position is {:.2g} cells, and {:g} is what steps on {} bear; use "
         "precision = \"double\", larger cells (grid.spacing) or a shorter grid (grid.upper)",
         scene.grid.axis_name(i), farthest, farthest / h, h, coarseness, limit,
         on_cell_lanes ? "cell lanes" : "particle kernels"));

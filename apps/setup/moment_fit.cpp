@@ -29,9 +29,9 @@ int coordinates_in(size_t product) {
   return count;
 }
 
-/// The particles of one cell; places in shares of the cell, from its lower corner.
+/// The particles of one cell; positions in shares of the cell, from its lower corner.
 struct CellOfParticles {
-  std::vector<Point> place;
+  std::vector<Point> local;
   std::vector<double> volume;
 };
 
@@ -51,7 +51,7 @@ std::vector<double> fitted(const CellOfParticles& cell, const BoxMoments& moment
     const size_t product = products[static_cast<size_t>(k)];
     wanted[k] = moments[product];
     for (Eigen::Index p = 0; p < particles; ++p)
-      m(k, p) = value_of_product(product, cell.place[static_cast<size_t>(p)]);
+      m(k, p) = value_of_product(product, cell.local[static_cast<size_t>(p)]);
   }
   const Vector before = Eigen::Map<const Vector>(cell.volume.data(), particles);
   const Eigen::LDLT<Eigen::MatrixXd> gram(m * before.asDiagonal() * m.transpose());
@@ -98,10 +98,10 @@ void fit_body(const Scene& scene, const Region& region, const PlacedBody& body, 
     }
     CellOfParticles cell;
     for (const size_t p : particles) {
-      Point place{};
+      Point local{};
       for (size_t i = 0; i < d; ++i)
-        place[i] = (placed.position[p][i] - box.lower[i]) / (box.upper[i] - box.lower[i]);
-      cell.place.push_back(place);
+        local[i] = (placed.position[p][i] - box.lower[i]) / (box.upper[i] - box.lower[i]);
+      cell.local.push_back(local);
       cell.volume.push_back(placed.volume[p] / cell_volume);
     }
     int degree = scene.dimension;

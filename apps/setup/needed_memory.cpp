@@ -35,7 +35,7 @@ double bytes_per_node(const Scene& scene) {
   return (1 + 5 * scene.dimension) * bytes_per_number(scene);
 }
 
-/// Position, velocity, mass, volume and stress (views/particles.hpp), and the place in the order of the
+/// Position, velocity, mass, volume and stress (views/particles.hpp), and the position in the order of the
 /// scene.
 double bytes_per_particle(const Scene& scene) {
   const int numbers = 2 * scene.dimension + 2 + (scene.dimension == 3 ? 6 : scene.dimension + 2);

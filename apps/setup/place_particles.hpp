@@ -31,7 +31,7 @@ struct MomentFit {
 };
 
 /// Where the particles of a body with a cut lattice begin, so that it is cut once: whole boxes side by side
-/// by the index of the first one, shares of boxes by their place.
+/// by the index of the first one, shares of boxes by their position.
 class CutStarts {
  public:
   CutStarts() = default;

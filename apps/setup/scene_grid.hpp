@@ -17,7 +17,7 @@ template <class Basis>
 std::array<int, 3> ijk_in_scene(const Basis& basis, int node) {
   const auto ijk = basis.grid.node_ijk(node);
   std::array<int, 3> in_scene{};
-  for (int i = 0; i < Basis::dimension; ++i) in_scene[static_cast<size_t>(i)] = ijk[i] - Basis::reach;
+  for (int i = 0; i < Basis::dimension; ++i) in_scene[static_cast<size_t>(i)] = ijk[i] - Basis::ghost_layers;
   return in_scene;
 }
 
@@ -47,7 +47,7 @@ template <class Basis>
 size_t scene_cell(const Scene& scene, const Basis&, const Vector<Basis::dimension, int>& cell) {
   int index = 0;
   for (int i = Basis::dimension - 1; i >= 0; --i)
-    index = index * scene.grid.cells[static_cast<size_t>(i)] + (cell[i] - Basis::reach);
+    index = index * scene.grid.cells[static_cast<size_t>(i)] + (cell[i] - Basis::ghost_layers);
   return static_cast<size_t>(index);
 }
 
@@ -76,7 +76,7 @@ void add_voids(const Scene& scene, const Basis& basis, const typename CellBits<D
     const auto ijk = grid.cell_ijk(n);
     bool in_scene = true;
     for (int i = 0; i < Basis::dimension; ++i) {
-      const int along = ijk[i] - Basis::reach;
+      const int along = ijk[i] - Basis::ghost_layers;
       in_scene = in_scene && along >= 0 && along < scene.grid.cells[static_cast<size_t>(i)];
     }
     const auto word = host(static_cast<size_t>(n / grid.cells[0]), static_cast<size_t>(ijk[0] / 64));

@@ -97,7 +97,7 @@ class Chords {
  private:
   static constexpr size_t n_ = 4;  // lines per direction
 
-  /// At the two places of Gauss's quadrature in each half of the box.
+  /// At the two positions of Gauss's quadrature in each half of the box.
   AxisBox line(size_t axis, size_t n) const {
     AxisBox line = box_;
     for (size_t k = 1; k < d_; ++k, n /= n_) {

@@ -17,7 +17,7 @@ struct Convergence {
   std::string note;                    ///< why there is neither
 };
 
-/// Of three values at different places h > 0, in any order.
-Convergence convergence_of(std::array<double, 3> places, std::array<double, 3> values);
+/// Of three values at different h > 0, in any order.
+Convergence convergence_of(std::array<double, 3> abscissae, std::array<double, 3> values);
 
 }  // namespace vsb::app

@@ -35,18 +35,19 @@ void compare_with_before(StudyLine& line, const StudySeries& series,
   const auto before = [&](size_t n) {
     return last >= n ? records[last - n]->figure(line.figure) : std::nullopt;
   };
-  const auto place = [&](size_t n) { return series.cases[last - n].axis; };
+  const auto axis_value = [&](size_t n) { return series.cases[last - n].axis; };
   const auto previous = before(1);
   const auto errors = error_names(*series.cases[last].scene);
   if (!previous || is_count(line.figure)) return;
   if (std::find(errors.begin(), errors.end(), line.figure) != errors.end()) {
-    line.rate = rate_between(*previous, *line.value, place(1), place(0));
+    line.rate = rate_between(*previous, *line.value, axis_value(1), axis_value(0));
     return;
   }
   line.difference = *line.value - *previous;
   const auto first = before(2);
   if (!first) return;
-  const auto found = convergence_of({place(2), place(1), place(0)}, {*first, *previous, *line.value});
+  const auto found =
+      convergence_of({axis_value(2), axis_value(1), axis_value(0)}, {*first, *previous, *line.value});
   line.rate = found.rate;
   line.extrapolated = found.extrapolated;
   if (!found.note.empty()) line.note += (line.note.empty() ? "" : "; ") + found.note;
@@ -146,16 +147,16 @@ StudyLine judge_statistic(const Study& study, const Statistic& statistic,
   return line;
 }
 
-std::vector<StudyLine> reach_lines(const Reach& reach, const std::vector<const CaseRecord*>& records) {
+std::vector<StudyLine> target_lines(const Target& target, const std::vector<const CaseRecord*>& records) {
   struct Case {
     double cost, error;
   };
   std::vector<StudyLine> lines;
-  for (const auto& figure : reach.figures)
+  for (const auto& figure : target.figures)
     for (const bool in_seconds : {true, false}) {
       StudyLine line;
       line.figure =
-          fmt::format("{} to {} = {:g}", in_seconds ? "seconds" : "particle-steps", figure, reach.level);
+          fmt::format("{} to {} = {:g}", in_seconds ? "seconds" : "particle-steps", figure, target.level);
       std::vector<Case> points;
       for (const auto* record : records) {
         const auto error = record->figure(figure);
@@ -164,7 +165,7 @@ std::vector<StudyLine> reach_lines(const Reach& reach, const std::vector<const C
       }
       std::sort(points.begin(), points.end(), [](const Case& a, const Case& b) { return a.cost < b.cost; });
       const auto enough =
-          std::find_if(points.begin(), points.end(), [&](const Case& p) { return p.error <= reach.level; });
+          std::find_if(points.begin(), points.end(), [&](const Case& p) { return p.error <= target.level; });
       if (points.size() < 2) {
         line.note = "needs two cases at least";
       } else if (enough == points.begin()) {
@@ -175,7 +176,7 @@ std::vector<StudyLine> reach_lines(const Reach& reach, const std::vector<const C
         const auto before = after - 1;
         const double slope = std::log(after->cost / before->cost) / std::log(before->error / after->error);
         if (after->error < before->error)
-          line.value = before->cost * std::pow(before->error / reach.level, slope);
+          line.value = before->cost * std::pow(before->error / target.level, slope);
         line.note = !line.value ? "does not fall" : enough == points.end() ? "extrapolated" : "";
       }
       lines.push_back(line);
@@ -187,7 +188,7 @@ StudyLine judge_relation(const Study& study, const Relation& relation, const Cas
                          const CaseRecord& second) {
   StudyLine line;
   const auto a = first.figure(relation.figure), b = second.figure(relation.figure);
-  const auto axis = [&](const Relation::Place& p) { return study.series[p.series].cases[p.index].axis; };
+  const auto axis = [&](const Relation::CaseOf& p) { return study.series[p.series].cases[p.index].axis; };
   const char* kind = "ratio";
   switch (relation.kind) {
     case Relation::Kind::ratio:

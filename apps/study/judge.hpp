@@ -42,9 +42,9 @@ StudyLine judge_relation(const Study& study, const Relation& relation, const Cas
 StudyLine judge_statistic(const Study& study, const Statistic& statistic,
                           const std::vector<const CaseRecord*>& records);
 
-/// The seconds and the particle-steps that a series needs to bring the figures of study.reach to their level:
-/// interpolated between cases, error against cost on logarithmic scales, or extrapolated from the last two.
-/// `records` are those of its cases. Lines without a value where the error does not fall.
-std::vector<StudyLine> reach_lines(const Reach& reach, const std::vector<const CaseRecord*>& records);
+/// The seconds and the particle-steps that a series needs to bring the figures of study.target to their
+/// level: interpolated between cases, error against cost on logarithmic scales, or extrapolated from the last
+/// two. `records` are those of its cases. Lines without a value where the error does not fall.
+std::vector<StudyLine> target_lines(const Target& target, const std::vector<const CaseRecord*>& records);
 
 }  // namespace vsb::app

@@ -153,7 +153,7 @@ class StudyReader {
     for (auto& table : r.tables(keys.relation)) read_relation(table, inherited);
     for (auto& table : r.tables(keys.statistic)) read_statistic(table, inherited);
     if (r.has(keys.chart)) read_chart(r.table(keys.chart));
-    if (r.has(keys.reach)) read_reach(r.table(keys.reach));
+    if (r.has(keys.target)) read_target(r.table(keys.target));
     r.finish();
     leave_out_fine_cases();
     refuse_without_figures();
@@ -207,7 +207,7 @@ class StudyReader {
     return bodies;
   }
 
-  /// A case for each seed, which is its place on the axis.
+  /// A case for each seed, which is its value on the axis.
   void draw_cases(TableReader& r, StudySeries& series, const Inherited& inherited) const {
     const auto& keys = series_keys;
     const auto& at = *r.written(keys.random_bodies);
@@ -238,14 +238,14 @@ class StudyReader {
     }
   }
 
-  /// The key by which cases have their place on the axis.
-  const Key& place_key(const PlaceKeys& keys) const {
+  /// The key by which cases have their value on the axis.
+  const Key& axis_key(const AxisValueKeys& keys) const {
     return study_.axis.labels ? static_cast<const Key&>(keys.label) : keys.axis;
   }
 
-  /// The case's place on the axis, written axis = number or label = "text".
-  const toml::node& read_place(TableReader& r, const PlaceKeys& keys, StudyCase& c,
-                               size_t label_count) const {
+  /// The case's value on the axis, written axis = number or label = "text".
+  const toml::node& read_axis_value(TableReader& r, const AxisValueKeys& keys, StudyCase& c,
+                                    size_t label_count) const {
     if (study_.axis.labels) {
       c.text = r.read(keys.label);
       c.axis = static_cast<double>(label_count);
@@ -254,40 +254,40 @@ class StudyReader {
       c.axis = r.read(study_.axis.log ? keys.axis.within(Range::positive()) : keys.axis);
       c.text = inline_toml(*r.written(keys.axis));
     }
-    return *r.written(place_key(keys));
+    return *r.written(axis_key(keys));
   }
 
   void read_case(TableReader& r, StudySeries& series, const Inherited& outer) {
     const auto& keys = case_keys;
     StudyCase c;
-    const auto& place = read_place(r, keys.place, c, series.cases.size());
+    const auto& axis_value = read_axis_value(r, keys.axis_value, c, series.cases.size());
     const char* sign = !study_.axis.labels && c.axis < 0 ? "minus-" : "";  // which slug leaves out
     c.directory = fmt::format("cases/{}_{}{}", slug(series.name), sign, slug(c.text));
     for (const auto& other : series.cases)
       if (other.directory == c.directory || (!study_.axis.labels && other.axis == c.axis))
-        r.fail(place_key(keys.place), "the series has this case already");
+        r.fail(axis_key(keys.axis_value), "the series has this case already");
     c.fine = r.read(keys.fine);
     Inherited inherited = outer;
-    if (!outer.sweep.empty()) inherited.set.push_back(outer.sweep + "=" + inline_toml(place));
+    if (!outer.sweep.empty()) inherited.set.push_back(outer.sweep + "=" + inline_toml(axis_value));
     inherited = read_inherited(r, keys.inherited, inherited, folder());
     if (inherited.scene.empty())
       r.missing(keys.inherited.scene, "the path of a scene file, here, in the series or in the study");
     c.expected_failure = r.read(keys.expect_failure);
     c.expect_static = inherited.expect_static;
     c.solution = inherited.solution;
-    read_case_scene(place, c, inherited);
+    read_case_scene(axis_value, c, inherited);
     read_figures(r, c, inherited);
     r.finish();
     series.cases.push_back(std::move(c));
   }
 
-  static void read_case_scene(const toml::node& place, StudyCase& c, const Inherited& inherited) {
+  static void read_case_scene(const toml::node& axis_value, StudyCase& c, const Inherited& inherited) {
     try {
       c.scene = read_scene(inherited.scene, inherited.set);
     } catch (const SceneError& error) {
       if (c.expected_failure.empty())
         throw SceneError(
-            fmt::format("{}: the scene of this case is refused:\n  {}", location(place), error.what()));
+            fmt::format("{}: the scene of this case is refused:\n  {}", location(axis_value), error.what()));
       c.reading_failure = error.what();
     }
   }
@@ -324,28 +324,28 @@ class StudyReader {
     r.fail(key, "there is no series of this name");
   }
 
-  Relation::Place read_place_of(TableReader& relation, const SubtableKey& key,
+  Relation::CaseOf read_case_of(TableReader& relation, const SubtableKey& key,
                                 const std::string& figure) const {
     const auto& keys = related_case_keys;
     if (!relation.has(key)) relation.missing(key, "a case: { series = ..., axis = ... (or label) }");
     TableReader r = relation.table(key);
-    Relation::Place place;
-    place.series = read_series_name(r, keys.series);
+    Relation::CaseOf reference;
+    reference.series = read_series_name(r, keys.series);
     StudyCase wanted;
-    read_place(r, keys.place, wanted, 0);
+    read_axis_value(r, keys.axis_value, wanted, 0);
     r.finish();
-    const auto& cases = study_.series[place.series].cases;
+    const auto& cases = study_.series[reference.series].cases;
     const auto same = [&](const StudyCase& c) {
       return study_.axis.labels ? c.text == wanted.text : c.axis == wanted.axis;
     };
-    place.index = static_cast<size_t>(std::find_if(cases.begin(), cases.end(), same) - cases.begin());
-    const auto& where = place_key(keys.place);
-    if (place.index == cases.size()) r.fail(where, "the series has no such case");
-    if (!cases[place.index].expected_failure.empty()) r.fail(where, "this case is expected to fail");
-    const auto& c = cases[place.index];
+    reference.index = static_cast<size_t>(std::find_if(cases.begin(), cases.end(), same) - cases.begin());
+    const auto& where = axis_key(keys.axis_value);
+    if (reference.index == cases.size()) r.fail(where, "the series has no such case");
+    if (!cases[reference.index].expected_failure.empty()) r.fail(where, "this case is expected to fail");
+    const auto& c = cases[reference.index];
     check_figure(relation, *relation.written(relation_keys.figure), figure,
                  figure_names(*c.scene, c.solution));
-    return place;
+    return reference;
   }
 
   /// The expectation under the only one of three keys that is there; returns which.
@@ -370,8 +370,8 @@ class StudyReader {
     Relation relation;
     relation.title = r.read(keys.title);
     relation.figure = r.read(keys.figure);
-    relation.first = read_place_of(r, keys.first, relation.figure);
-    relation.second = read_place_of(r, keys.second, relation.figure);
+    relation.first = read_case_of(r, keys.first, relation.figure);
+    relation.second = read_case_of(r, keys.second, relation.figure);
     relation.kind = static_cast<Relation::Kind>(read_one_of(r, {&keys.ratio, &keys.difference, &keys.rate},
                                                             keys.source, study, relation.expectation));
     if (relation.kind == Relation::Kind::rate && !study_.axis.log)
@@ -424,31 +424,31 @@ class StudyReader {
     study_.chart = chart;
   }
 
-  void read_reach(TableReader r) {
+  void read_target(TableReader r) {
     const auto known = names_of_cases([](const StudyCase& c) { return error_names(*c.scene); });
-    Reach reach;
+    Target target;
     if (known.empty())
-      r.missing(reach_keys.figures,
+      r.missing(target_keys.figures,
                 "errors of a scene: no scene of this study is compared with an exact solution");
-    reach.figures = figures_of(r, reach_keys.figures, known);
-    reach.level = r.read(reach_keys.level);
+    target.figures = figures_of(r, target_keys.figures, known);
+    target.level = r.read(target_keys.level);
     r.finish();
-    study_.reach = reach;
+    study_.target = target;
   }
 
-  /// Takes out what only --fine runs. Relations keep their places, so their cases move first.
+  /// Takes out what only --fine runs. Relations refer to the same cases afterwards, so these move first.
   void leave_out_fine_cases() {
     if (fine_) return;
     auto& relations = study_.relations;
-    const auto of = [&](const Relation::Place& p) { return study_.series[p.series].cases[p.index]; };
+    const auto of = [&](const Relation::CaseOf& p) { return study_.series[p.series].cases[p.index]; };
     relations.erase(std::remove_if(relations.begin(), relations.end(),
                                    [&](const Relation& r) { return of(r.first).fine || of(r.second).fine; }),
                     relations.end());
     for (auto& relation : relations)
-      for (auto* place : {&relation.first, &relation.second}) {
-        const auto& cases = study_.series[place->series].cases;
-        place->index -= static_cast<size_t>(
-            std::count_if(cases.begin(), cases.begin() + static_cast<std::ptrdiff_t>(place->index),
+      for (auto* reference : {&relation.first, &relation.second}) {
+        const auto& cases = study_.series[reference->series].cases;
+        reference->index -= static_cast<size_t>(
+            std::count_if(cases.begin(), cases.begin() + static_cast<std::ptrdiff_t>(reference->index),
                           [](const StudyCase& c) { return c.fine; }));
       }
     for (auto& series : study_.series)

@@ -106,7 +106,7 @@ class StudyRun {
     }
     judge_relations();
     judge_statistics();
-    add_reach();
+    add_target();
     write_study_files(options_.directory, study_, rows_);
     const std::string table = options_.directory + "/" + study_.name + ".csv";
     say("table {}\n", table);
@@ -126,10 +126,10 @@ class StudyRun {
 
   std::string title_of(const Task& t) const {
     const auto& c = case_of(t);
-    std::string place = c.text;
-    if (!study_.axis.labels) place = fmt::format("{} = {}", study_.axis.name, c.text);
-    if (!study_.axis.unit.empty()) place += " " + study_.axis.unit;
-    return fmt::format("{}, {}", study_.series[t.series].name, place);
+    std::string case_text = c.text;
+    if (!study_.axis.labels) case_text = fmt::format("{} = {}", study_.axis.name, c.text);
+    if (!study_.axis.unit.empty()) case_text += " " + study_.axis.unit;
+    return fmt::format("{}, {}", study_.series[t.series].name, case_text);
   }
 
   void announce(size_t t, bool earlier) const {
@@ -246,10 +246,10 @@ class StudyRun {
     }
   }
 
-  void add_reach() {
-    if (!study_.reach) return;
+  void add_target() {
+    if (!study_.target) return;
     for (size_t s = 0; s < study_.series.size(); ++s) {
-      rows_.push_back({"reach", study_.series[s].name, "", {}, reach_lines(*study_.reach, records_of(s))});
+      rows_.push_back({"target", study_.series[s].name, "", {}, target_lines(*study_.target, records_of(s))});
       say("{}\n", study_.series[s].name);
       print_lines(rows_.back());
     }

@@ -26,7 +26,7 @@ struct Expectation {
 
 struct StudyCase {
   std::string text;       ///< the value on the axis as written, or the label
-  double axis = 0;        ///< the value on the axis; of labels the place
+  double axis = 0;        ///< the value on the axis; of labels the number
   std::string directory;  ///< of its results, relative to the study's
   bool fine = false;
   std::string
@@ -56,7 +56,7 @@ struct Relation {
   enum class Kind { ratio, difference, rate };
   std::string title, figure;
   Kind kind = Kind::ratio;
-  struct Place {
+  struct CaseOf {
     size_t series = 0, index = 0;
   } first, second;
   Expectation expectation;
@@ -78,8 +78,8 @@ struct Chart {
   bool log = true;            ///< whether the figures have a logarithmic scale
 };
 
-/// What every series needs for its errors to fall to a level.
-struct Reach {
+/// What every series needs for its errors to fall to a level, the target.
+struct Target {
   std::vector<std::string> figures;
   double level = 0;
 };
@@ -92,7 +92,7 @@ struct Study {
   std::vector<Relation> relations;
   std::vector<Statistic> statistics;
   std::optional<Chart> chart;
-  std::optional<Reach> reach;
+  std::optional<Target> target;
 
   /// What its charts show: as the study says; else the errors of its scenes; else what scenes without an
   /// exact solution are judged by (report/summary.hpp). Cases that are expected to fail have none.

@@ -85,17 +85,17 @@ struct PublishedFigureKeys : KeyTable {
 inline const PublishedFigureKeys published_figure_keys;
 
 /// Where a case stands on the axis.
-struct PlaceKeys {
+struct AxisValueKeys {
   KeyTable& table;
   NumberKey axis{table,        "axis",
                  Range::any(), in_words("required, unless axis.labels"),
-                 "",           "the case's place on the axis; > 0 on a logarithmic one"};
+                 "",           "the case's value on the axis; > 0 on a logarithmic one"};
   TextKey label{table, "label", in_words("required with axis.labels"), "the case's name"};
 };
 
 struct CaseKeys : KeyTable {
   CaseKeys() : KeyTable("series.case", "A run of the scene with overrides.") {}
-  PlaceKeys place{*this};
+  AxisValueKeys axis_value{*this};
   BooleanKey fine{*this, "fine", false, "run by --fine alone"};
   InheritedKeys inherited{*this};
   TextKey expect_failure{
@@ -109,7 +109,7 @@ inline const CaseKeys case_keys;
 struct RandomBodiesKeys : KeyTable {
   RandomBodiesKeys()
       : KeyTable("series.random_bodies",
-                 "Cases of bodies drawn at random, each with a seed, which is its place on the axis.") {}
+                 "Cases of bodies drawn at random, each with a seed, which is its value on the axis.") {}
   IntegerKey count{*this, "count", 1, 10'000, required, "", "of the bodies"};
   IntegerKey first_seed{*this, "first_seed", 0, 1'000'000'000, 1, "", "of the first body"};
   NumberKey half_width{*this, "half_width", Range::positive(), required, "m", "of the box in which they lie"};
@@ -130,7 +130,7 @@ inline const SeriesKeys series_keys;
 struct RelatedCaseKeys : KeyTable {
   RelatedCaseKeys() : KeyTable("relation.first", "Which case; the same for `second`.") {}
   TextKey series{*this, "series", required, "its name"};
-  PlaceKeys place{*this};
+  AxisValueKeys axis_value{*this};
 };
 inline const RelatedCaseKeys related_case_keys;
 
@@ -146,7 +146,7 @@ struct RelationKeys : KeyTable {
   ExpectationKey ratio{*this, "ratio", in_words("none"), "first / second"};
   ExpectationKey difference{*this, "difference", in_words("none"), "absolute"};
   ExpectationKey rate{*this, "rate", in_words("none"),
-                      "log(first / second) over that of the places; for logarithmic axes"};
+                      "log(first / second) over that of the values on the axis; for logarithmic axes"};
 };
 inline const RelationKeys relation_keys;
 
@@ -173,16 +173,16 @@ struct ChartKeys : KeyTable {
 };
 inline const ChartKeys chart_keys;
 
-struct ReachKeys : KeyTable {
-  ReachKeys()
+struct TargetKeys : KeyTable {
+  TargetKeys()
       : KeyTable(
-            "reach",
+            "target",
             "Prints what every series needs for its errors to fall to a level: seconds and particle-steps.") {
   }
   WordsKey figures{*this, "figures", "names of errors", required, "of the scenes"};
   NumberKey level{*this, "level", Range::positive(), required, "", "of the errors"};
 };
-inline const ReachKeys reach_keys;
+inline const TargetKeys target_keys;
 
 struct StudyKeys : KeyTable {
   StudyKeys() : KeyTable("", "The keys at the top of the file, and its tables.") {}
@@ -197,7 +197,7 @@ struct StudyKeys : KeyTable {
   SubtablesKey statistic{*this, "statistic", statistic_keys, in_words("none"),
                          "expectations on all cases of a series"};
   SubtableKey chart{*this, "chart", chart_keys, in_words("errors of the scenes"), "what the chart shows"};
-  SubtableKey reach{*this, "reach", reach_keys, in_words("none"), "what a level of the errors costs"};
+  SubtableKey target{*this, "target", target_keys, in_words("none"), "what a level of the errors costs"};
 };
 inline const StudyKeys study_keys;
 

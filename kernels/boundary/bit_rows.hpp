@@ -70,7 +70,7 @@ struct BitRows {
   ///@{
   /// The row of cells at (j, k), and back; CellNumbering::row_index says the same of a cell.
   KOKKOS_FUNCTION int cell_row(int j, int k) const { return k * cell_rows[0] + j; }
-  KOKKOS_FUNCTION Vector<2, int> cell_row_place(int r) const {
+  KOKKOS_FUNCTION Vector<2, int> cell_row_indices(int r) const {
     return {{r % cell_rows[0], r / cell_rows[0]}};
   }
   ///@}
@@ -133,7 +133,7 @@ KOKKOS_INLINE_FUNCTION std::uint64_t dilated_word(const Rows& bits, const BitRow
 template <int Dim, class Rows>
 KOKKOS_INLINE_FUNCTION std::uint64_t touching_cells(const Rows& source, const BitRows<Dim>& tiling, int r,
                                                     int w) {
-  const auto at = tiling.cell_row_place(r);
+  const auto at = tiling.cell_row_indices(r);
   return dilated_word(source, tiling, w, {{at[0] - 1, at[1] - 1}}, {{at[0] + 1, at[1] + 1}}, 1, 1) &
          tiling.existing(at, w, 0);
 }

@@ -32,7 +32,7 @@ struct FloodVoids {
 
   KOKKOS_FUNCTION void operator()(int i, int& changed) const {
     const int r = i / tiling.words, w = i % tiling.words;
-    const auto row = tiling.cell_row_place(r);
+    const auto row = tiling.cell_row_indices(r);
     const int j = row[0], k = row[1];
     std::uint64_t reached = dilated_word(from, tiling, w, row, row, 1, 1);
     reached |= word(j - 1, k, w) | word(j + 1, k, w) | word(j, k - 1, w) | word(j, k + 1, w);
@@ -86,20 +86,20 @@ struct VoidFilterEffect {
   int dropped_nodes = 0;  ///< nodes at which a traction would act without the filter
 };
 
-/// The effect of the filter on a boundary of `boundary_node_count` nodes that is up to date; `conservative`
-/// as for mark_boundary_nodes. Waits for the device.
+/// The effect of the filter on a boundary of `boundary_node_count` nodes that is up to date;
+/// `at_all_active_nodes` as for mark_boundary_nodes. Waits for the device.
 template <class Exec, class Basis, int Dim, class Real, class Device>
 VoidFilterEffect void_filter_effect(const Exec& exec, const Particles<Dim, Real, Device>& particles,
                                     const CellBits<Device>& bits, const Basis& basis,
                                     const BoundaryNodes<Device>& tractions, int boundary_node_count,
-                                    TractionMask conservative = 0) {
+                                    TractionMask at_all_active_nodes = 0) {
   auto unfiltered = allocate_cell_bits<Device>(basis.grid);
   unfiltered.underfilled = bits.underfilled;
   unfiltered.carried = bits.carried;
   const BoundaryNodes<Device> boundary("vsb::unfiltered_boundary_nodes", tractions.extent(0));
   VoidFilterEffect effect;
   effect.dropped_nodes =
-      mark_boundary_of_located(exec, particles, unfiltered, basis, tractions, boundary, conservative) -
+      mark_boundary_of_located(exec, particles, unfiltered, basis, tractions, boundary, at_all_active_nodes) -
       boundary_node_count;
   const BitRows<Dim> tiling(basis.grid);
   Kokkos::parallel_reduce(

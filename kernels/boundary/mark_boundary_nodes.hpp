@@ -4,8 +4,8 @@
 ///   E1: void cells (no particle inside) that have an active node, that is, that touch a non-void cell;
 ///   E2: non-void cells that share a node with a cell of E1;
 ///   N1: active nodes whose support overlaps a cell of E1 or E2. For linear functions these are the nodes of
-///   such cells, as in the paper. Wider functions (Basis::reach rings more) add a ring of nodes. Without it a
-///   patch under uniform stress is out of balance by some 1e-3.
+///   such cells, as in the paper. Wider functions (Basis::ghost_layers rings more) add a ring of nodes.
+///   Without it a patch under uniform stress is out of balance by some 1e-3.
 /// The fill criterion (kernels/boundary/mark_underfilled_cells.hpp) adds underfilled cells to E2. The void
 /// filter (kernels/boundary/filter_voids.hpp) leaves void cells out of E1. Both are optional.
 ///
@@ -110,14 +110,14 @@ struct AddUnderfilled {
   }
 };
 
-/// Word w of row r of nodes: where carried traction k is declared. reach: of the basis.
+/// Word w of row r of nodes: where carried traction k is declared. ghost_layers: of the basis.
 template <int Dim, class Device>
 KOKKOS_INLINE_FUNCTION std::uint64_t carried_nodes(const CarriedTractions<Device>& carried, int k,
                                                    const BitRows<Dim>& tiling, const Vector<2, int>& at,
-                                                   int w, int reach) {
+                                                   int w, int ghost_layers) {
   const auto cells = [&](int row, int word) { return carried.cells(k, row, word); };
-  return dilated_word(cells, tiling, w, {{at[0] - 1 - reach, at[1] - 1 - reach}},
-                      {{at[0] + reach, at[1] + reach}}, reach, 1 + reach);
+  return dilated_word(cells, tiling, w, {{at[0] - 1 - ghost_layers, at[1] - 1 - ghost_layers}},
+                      {{at[0] + ghost_layers, at[1] + ghost_layers}}, ghost_layers, 1 + ghost_layers);
 }
 
 /// N1: one word of nodes; counts those at which a traction acts. Ghost nodes beyond walls are left out.
@@ -125,26 +125,28 @@ template <int Dim, class Device>
 struct MarkNodes {
   CellBits<Device> bits;
   BitRows<Dim> tiling;
-  int reach;  ///< of the basis
+  int ghost_layers;  ///< of the basis
   BoundaryNodes<Device> tractions;
   BoundaryNodes<Device> boundary;
-  TractionMask conservative;
+  TractionMask at_all_active_nodes;
 
   KOKKOS_FUNCTION void operator()(int i, int& count) const {
     const int r = i / tiling.words, w = i % tiling.words;
     const Vector<2, int> at{{r % tiling.node_rows[0], r / tiling.node_rows[0]}};
-    const Vector<2, int> from{{at[0] - 1 - reach, at[1] - 1 - reach}}, to{{at[0] + reach, at[1] + reach}};
-    const std::uint64_t active =
-        tiling.existing(at, w, 1) & dilated_word(bits.occupied, tiling, w, from, to, reach, 1 + reach);
-    const std::uint64_t marked = active & dilated_word(bits.boundary, tiling, w, from, to, reach, 1 + reach);
+    const Vector<2, int> from{{at[0] - 1 - ghost_layers, at[1] - 1 - ghost_layers}},
+        to{{at[0] + ghost_layers, at[1] + ghost_layers}};
+    const std::uint64_t active = tiling.existing(at, w, 1) & dilated_word(bits.occupied, tiling, w, from, to,
+                                                                          ghost_layers, 1 + ghost_layers);
+    const std::uint64_t marked =
+        active & dilated_word(bits.boundary, tiling, w, from, to, ghost_layers, 1 + ghost_layers);
     const auto& carried = bits.carried;
     for (int k = 0; k < carried.count(); ++k)
-      carried.nodes(k, r, w) = carried_nodes(carried, k, tiling, at, w, reach);
+      carried.nodes(k, r, w) = carried_nodes(carried, k, tiling, at, w, ghost_layers);
     const int nodes = math::min(tiling.cells_x + 1 - 64 * w, 64);
     for (int b = 0; b < nodes; ++b) {
       const int node = r * (tiling.cells_x + 1) + 64 * w + b;
       boundary(node) = marked >> b & 1   ? tractions(node) | carried.at(r, 64 * w + b)
-                       : active >> b & 1 ? tractions(node) & conservative
+                       : active >> b & 1 ? tractions(node) & at_all_active_nodes
                                          : 0;
       if (boundary(node) != 0) ++count;
     }
@@ -177,7 +179,7 @@ template <class Exec, class Basis, int Dim, class Real, class Device>
 int mark_boundary_of_located(const Exec& exec, const Particles<Dim, Real, Device>& particles,
                              const CellBits<Device>& bits, const Basis& basis,
                              const BoundaryNodes<Device>& tractions, const BoundaryNodes<Device>& boundary,
-                             TractionMask conservative = 0) {
+                             TractionMask at_all_active_nodes = 0) {
   const auto tiling = BitRows<Dim>::of(basis);
   const Kokkos::RangePolicy<Exec> over_cell_words(exec, 0, tiling.cell_row_count() * tiling.words);
   const Kokkos::RangePolicy<Exec> over_node_words(exec, 0, tiling.node_row_count() * tiling.words);
@@ -194,9 +196,10 @@ int mark_boundary_of_located(const Exec& exec, const Particles<Dim, Real, Device
     Kokkos::parallel_for("vsb::add_underfilled_cells", over_cell_words,
                          kernel::AddUnderfilled<Device>{bits, tiling.words});
   int count = 0;
-  Kokkos::parallel_reduce(
-      "vsb::mark_boundary_nodes", over_node_words,
-      kernel::MarkNodes<Dim, Device>{bits, tiling, Basis::reach, tractions, boundary, conservative}, count);
+  Kokkos::parallel_reduce("vsb::mark_boundary_nodes", over_node_words,
+                          kernel::MarkNodes<Dim, Device>{bits, tiling, Basis::ghost_layers, tractions,
+                                                         boundary, at_all_active_nodes},
+                          count);
   mirror_masks(exec, basis, boundary);
   exec.fence();
   return count;
@@ -204,15 +207,15 @@ int mark_boundary_of_located(const Exec& exec, const Particles<Dim, Real, Device
 
 /// Overwrites boundary[node] with tractions[node] at the nodes of N1 and with 0 elsewhere. Bit k of
 /// tractions[node]: traction k is declared at the node. Tractions that particles carry (bits.carried) are
-/// added. Those of `conservative` act at all active nodes, also outside N1. Reads positions alone. Returns
-/// the number of nodes, without ghost nodes, at which a traction acts; waits for the device. Throws
+/// added. Those of `at_all_active_nodes` act at all active nodes, also outside N1. Reads positions alone.
+/// Returns the number of nodes, without ghost nodes, at which a traction acts; waits for the device. Throws
 /// std::invalid_argument for a particle outside the grid or at NaN.
 template <class Exec, class Basis, int Dim, class Real, class Device>
 int mark_boundary_nodes(const Exec& exec, const Particles<Dim, Real, Device>& particles,
                         const CellBits<Device>& bits, const Basis& basis,
                         const BoundaryNodes<Device>& tractions, const BoundaryNodes<Device>& boundary,
-                        TractionMask conservative = 0) {
-  require_reach<Exec, Device>();
+                        TractionMask at_all_active_nodes = 0) {
+  require_accessible<Exec, Device>();
   const BitRows<Dim> rows(basis.grid);
   if (bits.occupied.extent(0) != static_cast<size_t>(rows.cell_row_count()) ||
       bits.occupied.extent(1) != static_cast<size_t>(rows.words))
@@ -224,7 +227,7 @@ int mark_boundary_nodes(const Exec& exec, const Particles<Dim, Real, Device>& pa
   if (const int outside = find_outside(exec, particles, basis); outside >= 0)
     detail::refuse("mark_boundary_nodes: the position of particle ", outside,
                    " is outside the grid or no number: mark the nodes of particles in the grid");
-  return mark_boundary_of_located(exec, particles, bits, basis, tractions, boundary, conservative);
+  return mark_boundary_of_located(exec, particles, bits, basis, tractions, boundary, at_all_active_nodes);
 }
 
 }  // namespace vsb

@@ -31,7 +31,7 @@ struct MarkUnderfilled {
     const int r = i / tiling.words, w = i % tiling.words;
     Vector<Dim, int> cell;
     cell[0] = 64 * w;
-    const auto row = tiling.cell_row_place(r);
+    const auto row = tiling.cell_row_indices(r);
     for (int k = 1; k < Dim; ++k) cell[k] = row[k - 1];
     const int first_node = basis.grid.node_index(cell), cells = math::min(tiling.cells_x - 64 * w, 64);
     std::uint64_t word = 0;
@@ -53,9 +53,9 @@ struct MarkUnderfilled {
     return volume < minimum_fill * basis.grid.cell_volume(cell);
   }
   KOKKOS_FUNCTION bool is_in(const Vector<Dim, int>& cell, int p) const {
-    const auto place = basis.grid.cell_containing(particles.position_of(p));
+    const auto containing = basis.grid.cell_containing(particles.position_of(p));
     bool same = true;
-    for (int i = 0; i < Dim; ++i) same = same && place[i] == cell[i];
+    for (int i = 0; i < Dim; ++i) same = same && containing[i] == cell[i];
     return same;
   }
 };

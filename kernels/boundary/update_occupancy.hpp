@@ -24,12 +24,13 @@ struct Occupancy {
   CellBits<Device> cells;           ///< E1, E2 and the other sets of Algorithm 1
   BoundaryNodes<Device> tractions;  ///< [node]: the tractions declared at the node
   BoundaryNodes<Device> boundary;   ///< [node]: the tractions that act there, N1 of Algorithm 1
-  TractionMask conservative = 0;    ///< the tractions that act at all active nodes, where they are declared
-  BoundaryNodes<Device> marked;     ///< [node]: `tractions` as the last update found them
-  TractionMask marked_conservative = 0;  ///< `conservative` as the last update found it
-  TractionMask declared = 0;             ///< the tractions that were declared at any node so far
-  int boundary_node_count = 0;           ///< nodes at which some traction acts
-  double minimum_fill = 0;               ///< of a cell's volume, see set_fill_criterion; 0: no criterion
+  TractionMask at_all_active_nodes =
+      0;                         ///< the tractions that act at all active nodes, where they are declared
+  BoundaryNodes<Device> marked;  ///< [node]: `tractions` as the last update found them
+  TractionMask marked_at_all_active_nodes = 0;  ///< `at_all_active_nodes` as the last update found it
+  TractionMask declared = 0;                    ///< the tractions that were declared at any node so far
+  int boundary_node_count = 0;                  ///< nodes at which some traction acts
+  double minimum_fill = 0;  ///< of a cell's volume, see set_fill_criterion; 0: no criterion
 };
 
 /// Allocates the occupancy of `particles` particles; no traction is declared anywhere yet.
@@ -87,7 +88,7 @@ void set_void_filter(Occupancy<Device>& o, const Basis& basis) {
   const auto host = Kokkos::create_mirror_view(o.cells.outside);
   const auto tiling = BitRows<Basis::dimension>::of(basis);
   for (int r = 0; r < tiling.cell_row_count(); ++r)
-    for (int w = 0; w < tiling.words; ++w) host(r, w) = tiling.existing(tiling.cell_row_place(r), w, 0);
+    for (int w = 0; w < tiling.words; ++w) host(r, w) = tiling.existing(tiling.cell_row_indices(r), w, 0);
   Kokkos::deep_copy(o.cells.outside, host);
   mark_anew(o);
 }
@@ -135,7 +136,7 @@ int update_occupancy(const Exec& exec, const Particles<Dim, Real, Device>& parti
       detail::whereabouts(exec, Look{{particles, basis, o.bins.bin}, o.tractions, o.marked, n, nodes},
                           math::max(n, nodes), n, o.bins, basis);
   if (where.lost >= 0) return where.lost;
-  where.changed = where.changed || o.conservative != o.marked_conservative;
+  where.changed = where.changed || o.at_all_active_nodes != o.marked_at_all_active_nodes;
   if (where.changed) {
     sort_by_bin(exec, o.bins);
     TractionMask declared = 0;
@@ -144,15 +145,15 @@ int update_occupancy(const Exec& exec, const Particles<Dim, Real, Device>& parti
                             Kokkos::BOr<TractionMask>(declared));
     exec.fence();
     o.declared |= declared;
-    o.marked_conservative = o.conservative;
+    o.marked_at_all_active_nodes = o.at_all_active_nodes;
   }
   const bool refilled = o.minimum_fill > 0 && mark_underfilled_cells(exec, particles, o.bins, basis,
                                                                      o.minimum_fill, o.cells.underfilled);
-  const bool moved = where.changed || Basis::reach > 0;
+  const bool moved = where.changed || Basis::ghost_layers > 0;
   if (moved && o.cells.outside.size() > 0) update_outside(exec, particles, o.cells, basis);
   if (moved || refilled)
-    o.boundary_node_count =
-        mark_boundary_of_located(exec, particles, o.cells, basis, o.tractions, o.boundary, o.conservative);
+    o.boundary_node_count = mark_boundary_of_located(exec, particles, o.cells, basis, o.tractions, o.boundary,
+                                                     o.at_all_active_nodes);
   return -1;
 }
 

@@ -36,23 +36,23 @@ struct KeepForce {
   }
 };
 
-/// One place of a chunk of nodes in the box.
+/// One node group of the box.
 template <int Dim, class Real, class Device>
 struct LaneNodeBalance {
   CellLanes<Dim, Real, Device> lanes;
   LaneNodeSums<Dim, Real, Device> sums;                   ///< with virtual stress
   Kokkos::View<Real**, Kokkos::LayoutLeft, Device> bare;  ///< [node][Dim], force without, N
 
-  KOKKOS_FUNCTION void operator()(int place, BalanceSums& sum) const {
+  KOKKOS_FUNCTION void operator()(int box_index, BalanceSums& sum) const {
     constexpr int width = Lanes<Real>::width;
-    const int chunk = lanes.chunk_at(place);
-    if (chunk < 0) return;
+    const int node_group = lanes.node_group_at(box_index);
+    if (node_group < 0) return;
     for (int l = 0; l < width; ++l) {
-      const int node = chunk * width + l;
+      const int node = node_group * width + l;
       ComponentMask fixed = 0;
       Vector<Dim, double> p, f, g;
       for (int i = 0; i < Dim; ++i) {
-        fixed = static_cast<ComponentMask>(fixed | (sums.nodes.fixed(chunk, i) >> l & 1) << i);
+        fixed = static_cast<ComponentMask>(fixed | (sums.nodes.fixed(node_group, i) >> l & 1) << i);
         p[i] = sums.sum(1 + i, node);
         f[i] = sums.force(node, i);
         g[i] = bare(node, i);
@@ -102,7 +102,7 @@ Balance<Dim> balance(const Exec& exec, const LaneState<Dim, Real, Device>& s, do
   if (Field::loaded) detail::sum_lanes(exec, apart, virtual_stress);
   auto result = detail::balance_of(
       ordered_sum<kernel::BalanceSums::size, Device>(
-          exec, "vsb::lane_node_balance", static_cast<int>(s.memory.lanes.chunk_at.extent(0)),
+          exec, "vsb::lane_node_balance", static_cast<int>(s.memory.lanes.node_group_at.extent(0)),
           kernel::LaneNodeBalance<Dim, Real, Device>{s.memory.lanes, sums, bare}),
       resultant(exec, s, virtual_stress, ~TractionMask(0), cover));
   result.strain_energy =

@@ -37,13 +37,13 @@ struct PackNumbers {
     const auto& group = lanes.groups(g);
     const int first_bin = (group.row * lanes.groups_per_row() + group.x) * width;
     for (int s = 0; s < group.capacity; ++s) {
-      LaneMask held = 0;
+      LaneMask with_particle = 0;
       for (int l = 0; l < width; ++l) {
         const int begin = bins.offset(first_bin + l), count = bins.offset(first_bin + l + 1) - begin;
         lanes.id((group.first + s) * width + l) = s < count ? bins.order(begin + s) : -1;
-        if (s < count) held |= LaneMask(1) << l;
+        if (s < count) with_particle |= LaneMask(1) << l;
       }
-      lanes.held(group.first + s) = held;
+      lanes.with_particle(group.first + s) = with_particle;
     }
   }
 };
@@ -113,7 +113,7 @@ template <class Exec, int Dim, class Real, class Device>
 int lay_out_particles(const Exec& exec, const Particles<Dim, Real, Device>& particles,
                       LaneMemory<Dim, Real, Device>& m) {
   using Cells = CellLanes<Dim, Real, Device>;
-  require_reach<Exec, Device>();
+  require_accessible<Exec, Device>();
   const int n = particles.count();
   particles.check();
   check_grid(m.grid);
@@ -131,7 +131,7 @@ int lay_out_particles(const Exec& exec, const Particles<Dim, Real, Device>& part
       const int cell = found == std::numeric_limits<int>::max() ? 0 : sign * found;
       (sign > 0 ? lowest : highest)[i] = cell;
     }
-  const kernel::BoxBasis<Dim, Real> basis{m.grid, box_around<Dim, Real>(lowest, highest, m.reach)};
+  const kernel::BoxBasis<Dim, Real> basis{m.grid, box_around<Dim, Real>(lowest, highest, m.group_margin)};
   auto bins = allocate_bins<Device>(n, basis.bin_count());
   const auto where = locate_particles(exec, particles, bins, basis);
   if (where.lost >= 0) return where.lost;
@@ -183,7 +183,7 @@ int pack_particles(const Exec& exec, const Particles<Dim, Real, Device>& particl
   detail::allocate_columns(m.lanes, m.lanes.slot_count);
   for (int c = 0; c < m.lanes.columns(); ++c)
     detail::pack_column(exec, m, detail::column_of(particles, c), c);
-  detail::allocate_leavers(exec, m);
+  detail::allocate_migrating(exec, m);
   exec.fence();
   return -1;
 }
@@ -196,7 +196,7 @@ ParticleBlock<Dim, Real, Device> allocate_particles_to_pack(int n, int state_siz
   using Result = ParticleBlock<Dim, Real, Device>;
   static_assert(Result::columns() == CellLanes<Dim, Real, Device>::state_column,
                 "the lanes have the block's");
-  const int rows = detail::with_room<Device>(n) + 64 * Lanes<Real>::width;
+  const int rows = detail::reserved_rows<Device>(n) + 64 * Lanes<Real>::width;
   const typename Result::Block block(Kokkos::view_alloc("vsb::particles", Kokkos::WithoutInitializing),
                                      static_cast<size_t>(padded_rows<Real>(rows)),
                                      static_cast<size_t>(Result::columns() + state_size));
@@ -237,7 +237,7 @@ int pack_particles(const Exec& exec, ParticleBlock<Dim, Real, Device>&& block,
   }
   exec.fence();
   m.column_before = {};
-  detail::allocate_leavers(exec, m);
+  detail::allocate_migrating(exec, m);
   exec.fence();
   return -1;
 }

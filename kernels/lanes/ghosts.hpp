@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Ghost nodes of dual cell lanes as mirror images of nodes inside (see physics/walls.hpp and
+/// Ghost nodes of node-centred cell lanes as mirror images of nodes inside (see physics/walls.hpp and
 /// kernels/particles/mirror_nodes.hpp). The sums of a ghost g are added to those of its image, with the sign
 /// s of a component; the ghost moves as its image does. Edges and corners are reflected in all their walls at
 /// once.
@@ -34,12 +34,12 @@ LaneGhosts<Device> list_ghosts(const CellLanes<Dim, Real, Device>& lanes, const 
   for (int i = 0; i < Dim; ++i) any = any || walls.mirrored(i, 0) || walls.mirrored(i, 1);
   if (!any) return {};
   constexpr int width = Lanes<Real>::width;
-  const auto chunks = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), lanes.chunk_at);
+  const auto node_groups = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), lanes.node_group_at);
   const int per_row = lanes.groups_per_row() + 1;
   const auto lowest = lanes.lowest_node();
   Vector<3, int> rows{{1, 1, 1}};
   for (int i = 1; i < Dim; ++i) rows[i] = lanes.box.cells[i] + 1;
-  const auto place_of = [&](const Vector<3, int>& ijk) {
+  const auto node_of = [&](const Vector<3, int>& ijk) {
     const int x = ijk[0] - lowest[0];
     int row = 0;
     for (int i = Dim - 1; i > 0; --i) {
@@ -48,19 +48,19 @@ LaneGhosts<Device> list_ghosts(const CellLanes<Dim, Real, Device>& lanes, const 
       row = row * rows[i] + at;
     }
     if (x < 0 || x >= per_row * width) return -1;
-    const int chunk = chunks(static_cast<size_t>(row * per_row + x / width));
-    return chunk < 0 ? -1 : chunk * width + x % width;
+    const int node_group = node_groups(static_cast<size_t>(row * per_row + x / width));
+    return node_group < 0 ? -1 : node_group * width + x % width;
   };
   struct Pair {
     int image, ghost;
     ComponentMask turned;
   };
   std::vector<Pair> pairs;
-  for (int place = 0; place < static_cast<int>(chunks.extent(0)); ++place) {
-    if (chunks(static_cast<size_t>(place)) < 0) continue;
+  for (int box_index = 0; box_index < static_cast<int>(node_groups.extent(0)); ++box_index) {
+    if (node_groups(static_cast<size_t>(box_index)) < 0) continue;
     for (int l = 0; l < width; ++l) {
-      Vector<3, int> ijk{{lowest[0] + place % per_row * width + l, 0, 0}};
-      for (int i = 1, row = place / per_row; i < Dim; ++i) {
+      Vector<3, int> ijk{{lowest[0] + box_index % per_row * width + l, 0, 0}};
+      for (int i = 1, row = box_index / per_row; i < Dim; ++i) {
         ijk[i] = lowest[i] + row % rows[i];
         row /= rows[i];
       }
@@ -75,9 +75,9 @@ LaneGhosts<Device> list_ghosts(const CellLanes<Dim, Real, Device>& lanes, const 
         }
       bool ghost = false;
       for (int i = 0; i < Dim; ++i) ghost = ghost || image[i] != ijk[i];
-      const int to = ghost ? place_of(image) : -1;
+      const int to = ghost ? node_of(image) : -1;
       // A ghost without an image is not a node of any particle.
-      if (to >= 0) pairs.push_back({to, place_of(ijk), turned});
+      if (to >= 0) pairs.push_back({to, node_of(ijk), turned});
     }
   }
   std::stable_sort(pairs.begin(), pairs.end(),

@@ -9,16 +9,17 @@
 namespace vsb {
 
 /// The box of cells lowest, ..., highest with a margin of void cells. Algorithm 1 needs the void cells around
-/// the body; particles can move within `reach` without a new box. The box may extend over the faces of the
-/// grid: groups begin at the lowest cell along x.
+/// the body; particles can move within `group_margin` without a new box. The box may extend over the faces of
+/// the grid: groups begin at the lowest cell along x.
 template <int Dim, class Real>
 CellBox<Dim> box_around(const Vector<Dim, int>& lowest, const Vector<Dim, int>& highest,
-                        const Reach<Dim>& reach) {
+                        const GroupMargin<Dim>& group_margin) {
   constexpr int width = Lanes<Real>::width;
   CellBox<Dim> box;
   for (int i = 0; i < Dim; ++i) {
     const int unit = i == 0 ? width : 1, void_cells = i == 0 ? std::max(width, 2) : 2;
-    const int below = void_cells + unit * reach.below[i], above = void_cells + unit * reach.above[i];
+    const int below = void_cells + unit * group_margin.below[i],
+              above = void_cells + unit * group_margin.above[i];
     box.first[i] = lowest[i] - below;
     box.cells[i] = highest[i] - lowest[i] + 1 + below + above;
     if (i == 0) box.cells[i] = (box.cells[i] + width - 1) / width * width;
@@ -53,50 +54,52 @@ template <int Dim, class Real, class Device>
 struct NeededSlots {
   using Ints = typename CellLanes<Dim, Real, Device>::Ints;
   Ints count;   ///< [cell of the box]: particles
-  Ints needed;  ///< [place]
-  KOKKOS_FUNCTION void operator()(int place) const {
+  Ints needed;  ///< [box_index]
+  KOKKOS_FUNCTION void operator()(int box_index) const {
     constexpr int width = Lanes<Real>::width;
     int most = 0;
-    for (int l = 0; l < width; ++l) most = math::max(most, static_cast<int>(count(place * width + l)));
-    needed(place) = most;
+    for (int l = 0; l < width; ++l) most = math::max(most, static_cast<int>(count(box_index * width + l)));
+    needed(box_index) = most;
   }
 };
 
 /// The maximum of the needed slots over the group positions from `below` before to `above` behind along an
-/// axis. One position of a group in the box.
+/// axis. One group of the box.
 template <int Dim, class Real, class Device>
 struct NeededAround {
   using Ints = typename CellLanes<Dim, Real, Device>::Ints;
   CellLanes<Dim, Real, Device> lanes;
   Ints needed, around;
   int axis, below, above;
-  KOKKOS_FUNCTION void operator()(int place) const {
+  KOKKOS_FUNCTION void operator()(int box_index) const {
     const int rows = lanes.rows_per_layer(), per_row = lanes.groups_per_row();
     const int stride = axis == 0 ? 1 : axis < Dim - 1 ? per_row : per_row * rows;
-    const int places = axis == 0 ? per_row : axis < Dim - 1 ? rows : lanes.layers();
-    const int at = place / stride % places;
+    const int box_size = axis == 0 ? per_row : axis < Dim - 1 ? rows : lanes.layers();
+    const int at = box_index / stride % box_size;
     int most = 0;
-    for (int i = math::max(-below, -at); i <= math::min(above, places - 1 - at); ++i)
-      most = math::max(most, static_cast<int>(needed(place + i * stride)));
-    around(place) = most;
+    for (int i = math::max(-below, -at); i <= math::min(above, box_size - 1 - at); ++i)
+      most = math::max(most, static_cast<int>(needed(box_index + i * stride)));
+    around(box_index) = most;
   }
 };
 
 /// How many slots the group at a position in the box gets.
 template <int Dim, class Real, class Device>
-struct GroupRoom {
-  typename CellLanes<Dim, Real, Device>::Ints needed;    ///< [place]
-  typename CellLanes<Dim, Real, Device>::Ints reached;   ///< [place]: above zero where there is a group
-  typename CellLanes<Dim, Real, Device>::Ints expected;  ///< [place]: slots that may be needed
+struct GroupSlots {
+  typename CellLanes<Dim, Real, Device>::Ints needed;    ///< [box_index]
+  typename CellLanes<Dim, Real, Device>::Ints nearby;    ///< [box_index]: above zero where there is a group
+  typename CellLanes<Dim, Real, Device>::Ints expected;  ///< [box_index]: slots that may be needed
   int slack;                                             ///< slots to spare
-  KOKKOS_FUNCTION int capacity(int place) const { return reached(place) > 0 ? expected(place) + slack : 0; }
+  KOKKOS_FUNCTION int capacity(int box_index) const {
+    return nearby(box_index) > 0 ? expected(box_index) + slack : 0;
+  }
 };
 
 template <int Dim, class Real, class Device>
 struct CountGroups {
-  GroupRoom<Dim, Real, Device> room;
-  KOKKOS_FUNCTION void operator()(int place, int& groups, int& slots) const {
-    const int capacity = room.capacity(place);
+  GroupSlots<Dim, Real, Device> group_slots;
+  KOKKOS_FUNCTION void operator()(int box_index, int& groups, int& slots) const {
+    const int capacity = group_slots.capacity(box_index);
     if (capacity == 0) return;
     ++groups;
     slots += capacity;
@@ -105,23 +108,23 @@ struct CountGroups {
 
 /// Stores the groups one after the other, with their slots; a single work item.
 template <int Dim, class Real, class Device>
-struct PlaceGroups {
+struct StoreGroups {
   CellLanes<Dim, Real, Device> lanes;
-  GroupRoom<Dim, Real, Device> room;
+  GroupSlots<Dim, Real, Device> group_slots;
 
   KOKKOS_FUNCTION void operator()(int) const {
-    const int per_row = lanes.groups_per_row(), places = lanes.row_count() * per_row;
+    const int per_row = lanes.groups_per_row(), box_size = lanes.row_count() * per_row;
     int group = 0, slot = 0;
-    for (int place = 0; place < places; ++place) {
-      const int capacity = room.capacity(place);
+    for (int box_index = 0; box_index < box_size; ++box_index) {
+      const int capacity = group_slots.capacity(box_index);
       if (capacity == 0) continue;
       auto& g = lanes.groups(group++);
       g = {};
       g.first = slot;
-      g.slots = room.needed(place);
+      g.slots = group_slots.needed(box_index);
       g.capacity = capacity;
-      g.x = place % per_row;
-      g.row = place / per_row;
+      g.x = box_index % per_row;
+      g.row = box_index / per_row;
       slot += capacity;
     }
   }
@@ -141,30 +144,31 @@ struct NumberNodes {
       while (layer <= of.row / lanes.rows_per_layer()) lanes.layer_first(layer++) = g;
       lanes.group_at(of.row * per_row + of.x) = g;
       for (int c = 0; c < rows; ++c) {
-        const int chunk = lanes.node_row_of_cell(of.row, c) * (per_row + 1) + of.x;
-        lanes.chunk_at(chunk) = lanes.chunk_at(chunk + 1) = 0;
+        const int node_group = lanes.node_row_of_cell(of.row, c) * (per_row + 1) + of.x;
+        lanes.node_group_at(node_group) = lanes.node_group_at(node_group + 1) = 0;
       }
     }
     while (layer <= lanes.layers()) lanes.layer_first(layer++) = lanes.group_count;
-    int chunk = 0;
-    const int chunks = static_cast<int>(lanes.chunk_at.extent(0)),
-              chunks_per_plane = lanes.node_rows_per_plane() * (per_row + 1);
-    for (int n = 0; n < chunks; ++n) {
-      if (n % chunks_per_plane == 0) lanes.plane_first(n / chunks_per_plane) = chunk * width;
-      if (lanes.chunk_at(n) >= 0) lanes.chunk_at(n) = chunk++;
+    int node_group = 0;
+    const int node_groups = static_cast<int>(lanes.node_group_at.extent(0)),
+              node_groups_per_plane = lanes.node_rows_per_plane() * (per_row + 1);
+    for (int n = 0; n < node_groups; ++n) {
+      if (n % node_groups_per_plane == 0) lanes.plane_first(n / node_groups_per_plane) = node_group * width;
+      if (lanes.node_group_at(n) >= 0) lanes.node_group_at(n) = node_group++;
     }
-    lanes.plane_first(chunks / chunks_per_plane) = chunk * width;
+    lanes.plane_first(node_groups / node_groups_per_plane) = node_group * width;
     for (int g = 0; g < lanes.group_count; ++g)
       for (int c = 0; c < rows; ++c) {
         auto& of = lanes.groups(g);
-        const int node = lanes.chunk_at(lanes.node_row_of_cell(of.row, c) * (per_row + 1) + of.x) * width;
-        (lanes.dual ? lanes.stencils(g).node[c] : of.node[c]) = node;
+        const int node =
+            lanes.node_group_at(lanes.node_row_of_cell(of.row, c) * (per_row + 1) + of.x) * width;
+        (lanes.node_centred ? lanes.stencils(g).node[c] : of.node[c]) = node;
       }
-    nodes = chunk * width;
+    nodes = node_group * width;
   }
 };
 
-/// The components prescribed at a node, from the faces of the grid on which it lies; one chunk of nodes.
+/// The components prescribed at a node, from the faces of the grid on which it lies; one node group.
 template <int Dim, class Real, class Device>
 struct FixLaneNodes {
   CellLanes<Dim, Real, Device> lanes;
@@ -172,11 +176,11 @@ struct FixLaneNodes {
   Vector<Dim, int> last;  ///< node of the grid
   Walls<Dim> walls;
 
-  KOKKOS_FUNCTION void operator()(int place) const {
+  KOKKOS_FUNCTION void operator()(int box_index) const {
     constexpr int width = Lanes<Real>::width;
-    const int chunk = lanes.chunk_at(place);
-    if (chunk < 0) return;
-    const int per_row = lanes.groups_per_row() + 1, row = place / per_row;
+    const int node_group = lanes.node_group_at(box_index);
+    if (node_group < 0) return;
+    const int per_row = lanes.groups_per_row() + 1, row = box_index / per_row;
     const auto lowest = lanes.lowest_node();
     auto ijk = lowest;
     if constexpr (Dim == 2) ijk[1] += row;
@@ -184,16 +188,16 @@ struct FixLaneNodes {
       ijk[1] += row % lanes.node_rows_per_plane();
       ijk[2] += row / lanes.node_rows_per_plane();
     }
-    for (int i = 0; i < Dim; ++i) nodes.fixed(chunk, i) = 0;
+    for (int i = 0; i < Dim; ++i) nodes.fixed(node_group, i) = 0;
     for (int l = 0; l < width; ++l) {
-      ijk[0] = lowest[0] + place % per_row * width + l;
+      ijk[0] = lowest[0] + box_index % per_row * width + l;
       ComponentMask fixed = 0;
       for (int i = 0; i < Dim; ++i) {
         if (ijk[i] == 0) fixed = static_cast<ComponentMask>(fixed | walls.fixed[i][0]);
         if (ijk[i] == last[i]) fixed = static_cast<ComponentMask>(fixed | walls.fixed[i][1]);
       }
       for (int i = 0; i < Dim; ++i)
-        if (fixed >> i & 1) nodes.fixed(chunk, i) |= std::uint32_t(1) << l;
+        if (fixed >> i & 1) nodes.fixed(node_group, i) |= std::uint32_t(1) << l;
     }
   }
 };
@@ -202,11 +206,11 @@ struct FixLaneNodes {
 
 namespace detail {
 
-/// The last nodes of the scene's grid: dual cells are one more than its cells.
+/// The last nodes of the scene's grid: node-centred cells are one more than its cells.
 template <int Dim, class Real, class Device>
 Vector<Dim, int> last_nodes(const LaneMemory<Dim, Real, Device>& m) {
   auto last = m.grid.cells;
-  if (m.lanes.dual)
+  if (m.lanes.node_centred)
     for (int i = 0; i < Dim; ++i) --last[i];
   return last;
 }
@@ -217,15 +221,15 @@ void number_nodes(const Exec& exec, LaneMemory<Dim, Real, Device>& m) {
   using Ints = typename CellLanes<Dim, Real, Device>::Ints;
   auto& lanes = m.lanes;
   const int per_row = lanes.groups_per_row(), layers = lanes.layers(), planes = Dim == 1 ? 1 : layers + 1,
-            chunks = planes * lanes.node_rows_per_plane() * (per_row + 1);
+            node_groups = planes * lanes.node_rows_per_plane() * (per_row + 1);
   const auto ints = [](const std::string& name, int n) { return Ints(name, static_cast<size_t>(n)); };
   lanes.layer_first = ints("vsb::layer_first", layers + 1);
   lanes.plane_first = ints("vsb::plane_first", layers + 2);
   lanes.group_at = ints("vsb::group_at", lanes.row_count() * per_row);
-  lanes.chunk_at = ints("vsb::chunk_at", chunks);
+  lanes.node_group_at = ints("vsb::node_group_at", node_groups);
   Kokkos::deep_copy(exec, lanes.group_at, -1);
-  Kokkos::deep_copy(exec, lanes.chunk_at, -1);
-  if (lanes.dual)
+  Kokkos::deep_copy(exec, lanes.node_group_at, -1);
+  if (lanes.node_centred)
     lanes.stencils = decltype(lanes.stencils)("vsb::lane_stencils", static_cast<size_t>(lanes.group_count));
   int node_count = 0;
   Kokkos::parallel_reduce("vsb::number_nodes", Kokkos::RangePolicy<Exec>(exec, 0, 1),
@@ -237,13 +241,13 @@ void number_nodes(const Exec& exec, LaneMemory<Dim, Real, Device>& m) {
   if (static_cast<int>(m.nodes.data.extent(0)) < node_count) {
     m.nodes.data = decltype(m.nodes.data)(
         "vsb::lane_nodes", static_cast<size_t>(padded_rows<Real>(node_count + node_count / 16)),
-        static_cast<size_t>(lanes.dual ? m.nodes.dual_column_count : m.nodes.column_count));
+        static_cast<size_t>(lanes.node_centred ? m.nodes.spline_column_count : m.nodes.column_count));
     m.nodes.fixed = decltype(m.nodes.fixed)("vsb::lane_nodes_fixed",
                                             m.nodes.data.extent(0) / static_cast<size_t>(lanes.width));
   } else {
     Kokkos::deep_copy(exec, m.nodes.data, Real(0));
   }
-  Kokkos::parallel_for("vsb::fix_lane_nodes", Kokkos::RangePolicy<Exec>(exec, 0, chunks),
+  Kokkos::parallel_for("vsb::fix_lane_nodes", Kokkos::RangePolicy<Exec>(exec, 0, node_groups),
                        kernel::FixLaneNodes<Dim, Real, Device>{lanes, m.nodes, last_nodes(m), m.walls});
 }
 
@@ -255,43 +259,44 @@ void number_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const Cell
   auto& lanes = m.lanes;
   lanes.box = box;
   int groups = 0, slots = 0;
-  const Kokkos::RangePolicy<Exec> over_places(exec, 0, lanes.row_count() * lanes.groups_per_row());
+  const Kokkos::RangePolicy<Exec> over_box(exec, 0, lanes.row_count() * lanes.groups_per_row());
   using Ints = typename CellLanes<Dim, Real, Device>::Ints;
-  const auto places = static_cast<size_t>(lanes.row_count() * lanes.groups_per_row());
-  kernel::GroupRoom<Dim, Real, Device> room{Ints("vsb::needed_slots", places), {}, {}, m.slack};
-  Kokkos::parallel_for("vsb::needed_slots", over_places,
-                       kernel::NeededSlots<Dim, Real, Device>{count, room.needed});
-  room.reached = room.expected = room.needed;
-  if (m.reach.any()) {
+  const auto box_size = static_cast<size_t>(lanes.row_count() * lanes.groups_per_row());
+  kernel::GroupSlots<Dim, Real, Device> group_slots{Ints("vsb::needed_slots", box_size), {}, {}, m.slack};
+  Kokkos::parallel_for("vsb::needed_slots", over_box,
+                       kernel::NeededSlots<Dim, Real, Device>{count, group_slots.needed});
+  group_slots.nearby = group_slots.expected = group_slots.needed;
+  if (m.group_margin.any()) {
     const auto widen = [&](Ints& needed, int axis, int below, int above) {
-      const Ints around("vsb::slots_around", places);
+      const Ints around("vsb::slots_around", box_size);
       Kokkos::parallel_for(
-          "vsb::slots_around", over_places,
+          "vsb::slots_around", over_box,
           kernel::NeededAround<Dim, Real, Device>{lanes, needed, around, axis, below, above});
       needed = around;
     };
     // Particles that move up by n groups come from n groups below: below and above change roles.
-    for (int i = 0; i < Dim; ++i) widen(room.reached, i, m.reach.above[i], m.reach.below[i]);
+    for (int i = 0; i < Dim; ++i)
+      widen(group_slots.nearby, i, m.group_margin.above[i], m.group_margin.below[i]);
     // Cells at the edge of a body hold fewer particles than the cells behind them that will follow.
-    room.expected = room.reached;
-    for (int i = 0; i < Dim; ++i) widen(room.expected, i, 1, 1);
+    group_slots.expected = group_slots.nearby;
+    for (int i = 0; i < Dim; ++i) widen(group_slots.expected, i, 1, 1);
   }
-  Kokkos::parallel_reduce("vsb::count_groups", over_places, kernel::CountGroups<Dim, Real, Device>{room},
+  Kokkos::parallel_reduce("vsb::count_groups", over_box, kernel::CountGroups<Dim, Real, Device>{group_slots},
                           groups, slots);
   exec.fence();
   lanes.group_count = groups;
   lanes.slot_count = slots;
   lanes.groups = decltype(lanes.groups)("vsb::lane_groups", static_cast<size_t>(groups));
-  Kokkos::parallel_for("vsb::place_groups", Kokkos::RangePolicy<Exec>(exec, 0, 1),
-                       kernel::PlaceGroups<Dim, Real, Device>{lanes, room});
+  Kokkos::parallel_for("vsb::store_groups", Kokkos::RangePolicy<Exec>(exec, 0, 1),
+                       kernel::StoreGroups<Dim, Real, Device>{lanes, group_slots});
   number_nodes(exec, m);
   int cells = 0;
   Kokkos::parallel_reduce(
       "vsb::count_cells", Kokkos::RangePolicy<Exec>(exec, 0, static_cast<int>(count.extent(0))),
       KOKKOS_LAMBDA(int cell, int& n) { n += count(cell) > 0; }, cells);
   exec.fence();
-  set_sweeps(lanes,
-             m.sweeps == Sweeps::one || (m.sweeps == Sweeps::chosen && one_sweep_is_faster(lanes, cells)));
+  set_remap_method(lanes, m.remap_method == RemapMethod::mass_matrix ||
+                              (m.remap_method == RemapMethod::chosen && mass_matrix_is_faster(lanes, cells)));
 }
 
 }  // namespace detail
@@ -321,10 +326,11 @@ bool lay_out_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const Cel
   for (size_t g = 0; g < shape.size(); ++g) {
     const auto& of = shape[g];
     if (of.x < 0 || of.x >= lanes.groups_per_row() || of.row < 0 || of.row >= lanes.row_count()) return false;
-    const int place = of.row * lanes.groups_per_row() + of.x;
-    if (place <= last || of.slots < 0 || of.capacity < of.slots || of.capacity > m.lanes.particle_count + 64)
+    const int box_index = of.row * lanes.groups_per_row() + of.x;
+    if (box_index <= last || of.slots < 0 || of.capacity < of.slots ||
+        of.capacity > m.lanes.particle_count + 64)
       return false;
-    last = place;
+    last = box_index;
     groups(g) = {};
     groups(g).first = lanes.slot_count;
     groups(g).slots = of.slots;
@@ -338,7 +344,7 @@ bool lay_out_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, const Cel
   detail::number_nodes(exec, m);
   detail::allocate_columns(m.lanes, m.lanes.slot_count);
   detail::allocate_numbers(m.lanes, m.lanes.slot_count);
-  detail::allocate_leavers(exec, m);
+  detail::allocate_migrating(exec, m);
   exec.fence();
   return true;
 }

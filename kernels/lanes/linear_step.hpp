@@ -19,7 +19,7 @@ namespace vsb {
 /// What a step on cell lanes works on.
 template <int Dim, class Real, class Device>
 struct LaneState {
-  static constexpr bool splines = false;         ///< whether cells are dual
+  static constexpr bool splines = false;         ///< whether cells are node-centred
   using device = Device;                         ///< where the memory is
   LaneMemory<Dim, Real, Device> memory;          ///< packed particles, nodes and grid
   LaneBoundary<Dim, Device> boundary;            ///< declared tractions, and the nodes at which they act
@@ -28,14 +28,14 @@ struct LaneState {
   int gauss_points = 2;             ///< of these, per direction, 1 to 4
   long long repacked = 0;           ///< times
   int steps_since_repacked = 1000;  ///< since all particles were packed anew, or 1000 at first
-  int steps_of_flow = 0;            ///< the last ones in a row in which many particles left their cells
+  int steps_with_migration = 0;     ///< the last ones in a row in which many particles left their cells
   bool unmarked = false;            ///< cells turned void or filled since the boundary was marked
   bool prepared = false;            ///< whether the nodes have the sums of the step to come
   bool loads_due = false;           ///< of the step to come, by add_lane_loads
   bool loads_found = false;         ///< whether the load has been found to act at some node
 
   /// Whether the cells of the grid are cubes (squares in 2D).
-  bool cubic() const {
+  bool equal_spacing() const {
     for (int i = 1; i < Dim; ++i)
       if (memory.grid.spacing[i] != memory.grid.spacing[0]) return false;
     return true;
@@ -55,10 +55,10 @@ struct JoinLayers {
 
 namespace detail {
 
-/// Calls work(true or false as a type): whether cells are cubes.
+/// Calls work(true or false as a type): whether the spacing is equal in all directions.
 template <int Dim, class Real, class Device, class Work>
-void with_cubic(const LaneState<Dim, Real, Device>& s, const Work& work) {
-  if (s.cubic())
+void with_equal_spacing(const LaneState<Dim, Real, Device>& s, const Work& work) {
+  if (s.equal_spacing())
     work(std::true_type{});
   else
     work(std::false_type{});
@@ -87,9 +87,9 @@ OverLayers<Exec> over_layers(const Exec& exec, const LaneState<Dim, Real, Device
 template <class Exec, class Field, int Dim, class Real, class Device>
 void sum_lanes(const Exec& exec, const LaneState<Dim, Real, Device>& s, const Field& field,
                const Kokkos::View<int*, Device>& only = {}) {
-  with_cubic(s, [&](auto cubic) {
+  with_equal_spacing(s, [&](auto equal_spacing) {
     Kokkos::parallel_for("vsb::sum_lanes", over_layers(exec, s),
-                         kernel::SumLanes<decltype(cubic)::value, Field, Dim, Real, Device>{
+                         kernel::SumLanes<decltype(equal_spacing)::value, Field, Dim, Real, Device>{
                              loaded_lanes(s), s.memory.nodes, field, only});
   });
 }
@@ -113,7 +113,7 @@ namespace detail {
 /// Refuses lanes without particles that were packed.
 template <class Exec, int Dim, class Real, class Device>
 void check_packed(const LaneState<Dim, Real, Device>& s) {
-  require_reach<Exec, Device>();
+  require_accessible<Exec, Device>();
   if (s.memory.lanes.layer_first.extent(0) == 0)
     refuse("the cell lanes hold no particles: call pack_lanes before prepare_lane_step");
 }
@@ -136,7 +136,7 @@ void note_prepared(LaneState<Dim, Real, Device>& s) {
 
 /// note_prepared after a step that lost particle `lost`, or none (-1). Returns `lost`.
 template <int Dim, class Real, class Device>
-int note_settled(LaneState<Dim, Real, Device>& s, int lost) {
+int note_step_end(LaneState<Dim, Real, Device>& s, int lost) {
   note_prepared(s);
   s.prepared = lost < 0;
   return lost;
@@ -205,10 +205,10 @@ void mark_packed_lanes(const Exec& exec, LaneState<Dim, Real, Device>& s) {
 
 namespace detail {
 
-/// Whether cells turned void or filled in a step; leavers: the particles that left their cells in it.
+/// Whether cells turned void or filled in a step; migrating: the particles that left their cells in it.
 template <class Exec, int Dim, class Real, class Device>
-bool cells_changed(const Exec& exec, const LaneState<Dim, Real, Device>& s, int leavers) {
-  return leavers > 0 && update_occupied(exec, s.memory.lanes, s.boundary);
+bool cells_changed(const Exec& exec, const LaneState<Dim, Real, Device>& s, int migrating) {
+  return migrating > 0 && update_occupied(exec, s.memory.lanes, s.boundary);
 }
 
 /// Marks the boundary anew where a field acts and cells turned void or filled. Returns whether it did.
@@ -244,55 +244,56 @@ int pack_lanes(const Exec& exec, ParticleBlock<Dim, Real, Device>&& block, LaneS
 
 /// Gives groups spare slots where they overflowed soon after the last packing.
 template <int Dim, class Real, class Device>
-void make_more_room(LaneState<Dim, Real, Device>& s, const HomelessCount& homeless) {
+void adapt_slack(LaneState<Dim, Real, Device>& s, const OverflowCount& overflow) {
   auto& m = s.memory;
   if (s.steps_since_repacked < 100) {
-    if (homeless.without_slot > 0) m.slack = math::min(m.slack + 1, 4);
+    if (overflow.without_slot > 0) m.slack = math::min(m.slack + 1, 4);
   } else if (s.steps_since_repacked >= 1000) {
     m.slack = 1;
-    m.reach = {};
+    m.group_margin = {};
   }
   ++s.repacked;
 }
 
 namespace detail {
 
-/// The end of a step after its sweeps: brings the leavers to their cells, marks the boundary, and computes
-/// the nodal sums that the last sweep did not (`summed`: whether it did any). Returns what lane_step returns.
-/// States other than LaneState have their own mark_packed_lanes, cells_changed, bring_marks_up_to_date and
-/// sum_lanes.
+/// The end of a step after its sweeps: brings the migrating particles to their cells, marks the boundary, and
+/// computes the nodal sums that the last sweep did not (`summed`: whether it did any). Returns what lane_step
+/// returns. States other than LaneState have their own mark_packed_lanes, cells_changed,
+/// bring_marks_up_to_date and sum_lanes.
 template <class Exec, class Field, class State>
-int settle_leavers(const Exec& exec, State& s, const Field& next_virtual_stress, bool summed) {
+int finish_migration(const Exec& exec, State& s, const Field& next_virtual_stress, bool summed) {
   auto& m = s.memory;
   ++s.steps_since_repacked;
-  const int leavers = count_leavers(exec, m);
-  s.steps_of_flow = leavers > m.lanes.particle_count / 50 ? math::min(s.steps_of_flow + 1, 2) : 0;
-  int unsummed = 0;  // layers, of leavers.unsummed
-  if (leavers > 0) {
+  const int migrating = count_migrating(exec, m);
+  s.steps_with_migration =
+      migrating > m.lanes.particle_count / 50 ? math::min(s.steps_with_migration + 1, 2) : 0;
+  int unsummed = 0;  // layers, of migrating.unsummed
+  if (migrating > 0) {
     // An empty entry costs as much as a particle in every sweep. To fill it costs as much as one migration.
-    const bool closing = s.steps_since_repacked % 8 == 0;
-    const auto homeless = take_in_leavers(exec, m, next_virtual_stress, s.boundary.tractions, closing);
-    if (homeless.any()) {
-      make_more_room(s, homeless);
+    const bool compacting = s.steps_since_repacked % 8 == 0;
+    const auto overflow = insert_migrating(exec, m, next_virtual_stress, s.boundary.tractions, compacting);
+    if (overflow.any()) {
+      adapt_slack(s, overflow);
       // A moving body gets groups of cells ahead of it.
-      const int lost = repack_lanes(exec, m, homeless.without_group > 0 && s.steps_since_repacked < 100);
+      const int lost = repack_lanes(exec, m, overflow.without_group > 0 && s.steps_since_repacked < 100);
       s.steps_since_repacked = 0;
       if (lost >= 0) return lost;
       mark_packed_lanes(exec, s);
       sum_lanes(exec, s, next_virtual_stress);
       return -1;
     }
-    unsummed = homeless.unsummed_layers;
+    unsummed = overflow.unsummed_layers;
   }
-  if (cells_changed(exec, s, leavers)) s.unmarked = true;
+  if (cells_changed(exec, s, migrating)) s.unmarked = true;
   const bool reloaded = bring_marks_up_to_date<Field>(exec, s) && Field::loaded;
   if (unsummed > 0 && reloaded)
     Kokkos::parallel_for("vsb::join_layers", Kokkos::RangePolicy<Exec>(exec, 0, m.lanes.layers()),
-                         kernel::JoinLayers<typename State::device>{m.leavers.unsummed, s.boundary.stale});
-  if (leavers == 0 && !summed)
+                         kernel::JoinLayers<typename State::device>{m.migrating.unsummed, s.boundary.stale});
+  if (migrating == 0 && !summed)
     sum_lanes(exec, s, next_virtual_stress);
   else if (unsummed > 0)
-    sum_lanes(exec, s, next_virtual_stress, m.leavers.unsummed);
+    sum_lanes(exec, s, next_virtual_stress, m.migrating.unsummed);
   else if (reloaded)
     sum_lanes(exec, s, next_virtual_stress, s.boundary.stale);
   return -1;
@@ -325,37 +326,37 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
   detail::check_lane_step(s, material, next_virtual_stress, options);
   const auto swept = detail::of_sweeps(next_virtual_stress, s.original);
   detail::bring_marks_up_to_date<Field>(exec, s);
-  const Kokkos::RangePolicy<Exec> over_chunks(exec, 0, m.lanes.node_count / m.lanes.width);
+  const Kokkos::RangePolicy<Exec> over_node_groups(exec, 0, m.lanes.node_count / m.lanes.width);
 
-  Kokkos::parallel_for("vsb::update_lane_nodes", over_chunks,
+  Kokkos::parallel_for("vsb::update_lane_nodes", over_node_groups,
                        kernel::UpdateLaneNodes<Dim, Real, Device>{{m.nodes},
                                                                   options.gravity,
                                                                   m.grid.inverse_spacing,
                                                                   options.damping,
                                                                   options.dt,
-                                                                  m.lanes.one_sweep()});
-  if (m.lanes.one_sweep())
+                                                                  m.lanes.remaps_by_mass_matrix()});
+  if (m.lanes.remaps_by_mass_matrix())
     Kokkos::parallel_for("vsb::remap_lanes", detail::over_layers(exec, s),
                          kernel::RemapLanes<Dim, Real, Device>{m.lanes, m.nodes});
   else
     Kokkos::parallel_for("vsb::accelerate_lanes", detail::over_layers(exec, s),
                          kernel::AccelerateLanes<Dim, Real, Device>{m.lanes, m.nodes});
   Kokkos::parallel_for(
-      "vsb::remap_lane_nodes", over_chunks,
+      "vsb::remap_lane_nodes", over_node_groups,
       kernel::RemapLaneNodes<Dim, Real, Device>{{m.nodes}, options.dt * m.grid.inverse_spacing[0]});
-  const bool and_sum = s.steps_of_flow < 2;
-  detail::with_cubic(s, [&](auto cubic) {
+  const bool and_sum = s.steps_with_migration < 2;
+  detail::with_equal_spacing(s, [&](auto equal_spacing) {
     Kokkos::parallel_for(
         "vsb::move_lanes", detail::over_layers(exec, s),
-        kernel::MoveLanes<decltype(cubic)::value, Field, Material, Volume, Dim, Real, Device>{
+        kernel::MoveLanes<decltype(equal_spacing)::value, Field, Material, Volume, Dim, Real, Device>{
             detail::loaded_lanes(s),
-            {m.lanes, m.nodes, m.grid, material, volume, m.leavers,
+            {m.lanes, m.nodes, m.grid, material, volume, m.migrating,
              detail::lane_share<Dim>(material, options)},
             swept,
             and_sum});
   });
   move_surface_points(exec, m, s.surface);
-  return detail::note_settled(s, detail::settle_leavers(exec, s, swept, and_sum));
+  return detail::note_step_end(s, detail::finish_migration(exec, s, swept, and_sum));
 }
 
 }  // namespace vsb

@@ -36,7 +36,7 @@ template <class Exec, int Dim, class Real, class Device>
 LoadedCells count_loaded_cells(const Exec& exec, const SplineLaneState<Dim, Real, Device>& s,
                                TractionMask traction) {
   return detail::count_loaded_cells(
-      exec, s.boundary.bits, dual_tiling(s.memory.lanes, s.grid.cells, s.memory.walls),
+      exec, s.boundary.bits, spline_tiling(s.memory.lanes, s.grid.cells, s.memory.walls),
       kernel::MasksOfLanes<Dim, Real, Device>{s.memory.lanes, s.boundary.tractions}, traction);
 }
 ///@}

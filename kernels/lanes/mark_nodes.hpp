@@ -16,7 +16,7 @@ template <int Dim, class Device>
 struct LaneBoundary {
   using Rows = typename CellBits<Device>::Rows;  ///< sets of cells or nodes
   CellBits<Device> bits;  ///< of the box; bits.occupied is kept up to date by every sweep. With
-                          ///< dual cells, of the grid's cells from the lowest node of the box on
+                          ///< node-centred cells, of the grid's cells from the lowest node of the box on
   ///@{
   /// [row of nodes of the box][word]: N1, and nodes with mass.
   Rows marked, active;
@@ -28,11 +28,11 @@ struct LaneBoundary {
   /// [node of the grid]: tractions declared at some nodes; may be empty. prepare_lane_step reads it; call
   /// that again after a change of the array.
   Kokkos::View<const TractionMask*, Device> declared;
-  TractionMask conservative = 0;  ///< those that act at all active nodes
+  TractionMask at_all_active_nodes = 0;  ///< those that act at all active nodes
   TractionMask all_declared = 0;  ///< declared at any node so far. The members below belong to the marks
   ///@{
-  /// `everywhere` and `conservative` as the last marking found them.
-  TractionMask marked_everywhere = 0, marked_conservative = 0;
+  /// `everywhere` and `at_all_active_nodes` as the last marking found them.
+  TractionMask marked_everywhere = 0, marked_at_all_active_nodes = 0;
   ///@}
   const TractionMask* marked_declared = nullptr;  ///< the memory of `declared` at the last marking
   bool up_to_date = false;                        ///< whether the members above belong to declarations
@@ -63,8 +63,8 @@ struct OccupyLanes {
   }
 };
 
-/// One word of nodes: N1, and the tractions of the nodes where anything changed. reach: of the basis.
-template <int reach, int Dim, class Real, class Device>
+/// One word of nodes: N1, and the tractions of the nodes where anything changed. ghost_layers: of the basis.
+template <int ghost_layers, int Dim, class Real, class Device>
 struct MarkLaneNodes {
   CellLanes<Dim, Real, Device> lanes;
   LaneBoundary<Dim, Device> boundary;
@@ -74,13 +74,15 @@ struct MarkLaneNodes {
 
   KOKKOS_FUNCTION void operator()(int r) const {
     const Vector<2, int> at{{r % tiling.node_rows[0], r / tiling.node_rows[0]}};
-    const Vector<2, int> from{{at[0] - 1 - reach, at[1] - 1 - reach}}, to{{at[0] + reach, at[1] + reach}};
+    const Vector<2, int> from{{at[0] - 1 - ghost_layers, at[1] - 1 - ghost_layers}},
+        to{{at[0] + ghost_layers, at[1] + ghost_layers}};
     boundary.changed(r) = 0;
     for (int w = 0; w < tiling.words; ++w) {
-      const std::uint64_t active = tiling.existing(at, w, 1) & dilated_word(boundary.bits.occupied, tiling, w,
-                                                                            from, to, reach, 1 + reach);
+      const std::uint64_t active =
+          tiling.existing(at, w, 1) &
+          dilated_word(boundary.bits.occupied, tiling, w, from, to, ghost_layers, 1 + ghost_layers);
       const std::uint64_t marked =
-          active & dilated_word(boundary.bits.boundary, tiling, w, from, to, reach, 1 + reach);
+          active & dilated_word(boundary.bits.boundary, tiling, w, from, to, ghost_layers, 1 + ghost_layers);
       const bool carried_anew = declare_carried(r, w, at);
       if (!anew && !carried_anew && marked == boundary.marked(r, w) && active == boundary.active(r, w))
         continue;
@@ -93,18 +95,18 @@ struct MarkLaneNodes {
   KOKKOS_FUNCTION void write(int r, int w, const Vector<2, int>& at, std::uint64_t marked,
                              std::uint64_t active) const {
     constexpr int width = Lanes<Real>::width;
-    const int chunks = lanes.groups_per_row() + 1;
+    const int node_groups = lanes.groups_per_row() + 1;
     const bool alike = boundary.declared.size() == 0 && !boundary.bits.carried.any();
-    for (int c = 64 / width * w; c < math::min(64 / width * (w + 1), chunks); ++c) {
-      const int chunk = lanes.chunk_at(r * chunks + c);
-      if (chunk < 0) continue;
+    for (int c = 64 / width * w; c < math::min(64 / width * (w + 1), node_groups); ++c) {
+      const int node_group = lanes.node_group_at(r * node_groups + c);
+      if (node_group < 0) continue;
       for (int x = c * width; x < (c + 1) * width; ++x) {
         const TractionMask here = marked >> x % 64 & 1   ? ~TractionMask(0)
-                                  : active >> x % 64 & 1 ? boundary.conservative
+                                  : active >> x % 64 & 1 ? boundary.at_all_active_nodes
                                                          : 0;
-        boundary.tractions(chunk * width + x % width) = alike       ? here & boundary.everywhere
-                                                        : here == 0 ? 0
-                                                                    : here & declared(r, x, at);
+        boundary.tractions(node_group * width + x % width) = alike       ? here & boundary.everywhere
+                                                             : here == 0 ? 0
+                                                                         : here & declared(r, x, at);
       }
     }
   }
@@ -113,7 +115,7 @@ struct MarkLaneNodes {
     const auto& carried = boundary.bits.carried;
     bool changed = false;
     for (int k = 0; k < carried.count(); ++k) {
-      const std::uint64_t bits = carried_nodes(carried, k, tiling, at, w, reach);
+      const std::uint64_t bits = carried_nodes(carried, k, tiling, at, w, ghost_layers);
       changed = changed || bits != carried.nodes(k, r, w);
       carried.nodes(k, r, w) = bits;
     }
@@ -129,8 +131,8 @@ struct MarkLaneNodes {
   }
 };
 
-/// One group: marks the cells with particles that carry tractions, of the scene's grid where cells are dual
-/// ones (see mark_dual_lanes.hpp).
+/// One group: marks the cells with particles that carry tractions, of the scene's grid where cells are
+/// node-centred ones (see spline_mark_nodes.hpp).
 template <int Dim, class Real, class Device>
 struct MarkCarryingLanes {
   CellLanes<Dim, Real, Device> lanes;
@@ -146,9 +148,9 @@ struct MarkCarryingLanes {
       mark_carrying_cell(carried, mask, row, x + upper(e, 0));
     }
   }
-  /// Whether a particle is in the upper half of its dual cell.
+  /// Whether a particle is in the upper half of its node-centred cell.
   KOKKOS_FUNCTION int upper(size_t e, int axis) const {
-    return lanes.dual && axis < Dim && *lanes.at(lanes.xi_column + axis, e) >= Real(0.5) ? 1 : 0;
+    return lanes.node_centred && axis < Dim && *lanes.at(lanes.xi_column + axis, e) >= Real(0.5) ? 1 : 0;
   }
 };
 
@@ -164,7 +166,7 @@ struct LoadGroup {
     for (int r = 0; r < lanes.node_rows_of_cell(); ++r)
       changed = changed || boundary.changed(lanes.node_row_of_cell(group.row, r)) != 0;
     if (!changed) return;
-    if (lanes.dual)
+    if (lanes.node_centred)
       load(group, lanes.stencils(g).node, lanes.stencils(g).loaded, 3);
     else
       load(group, group.node, group.loaded, 2);
@@ -230,8 +232,8 @@ namespace detail {
 /// Whether the marks belong to what is declared. Does not compare node by node.
 template <int Dim, class Device>
 bool declared_as_marked(const LaneBoundary<Dim, Device>& b) {
-  return b.up_to_date && b.everywhere == b.marked_everywhere && b.conservative == b.marked_conservative &&
-         b.declared.data() == b.marked_declared;
+  return b.up_to_date && b.everywhere == b.marked_everywhere &&
+         b.at_all_active_nodes == b.marked_at_all_active_nodes && b.declared.data() == b.marked_declared;
 }
 
 template <int Dim, class Device>
@@ -256,7 +258,7 @@ void take_declarations(const Exec& exec, LaneBoundary<Dim, Device>& b, int grid_
   }
   b.all_declared |= b.everywhere;
   b.marked_everywhere = b.everywhere;
-  b.marked_conservative = b.conservative;
+  b.marked_at_all_active_nodes = b.at_all_active_nodes;
   b.marked_declared = b.declared.data();
   b.up_to_date = true;
 }
@@ -319,8 +321,8 @@ bool update_occupied(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes
 }
 
 /// From bits.occupied, which `tiling` describes, to the tractions of nodes. anew: after packing anew, or
-/// where a declaration changed. reach: of the basis.
-template <int reach, class Exec, int Dim, class Real, class Device>
+/// where a declaration changed. ghost_layers: of the basis.
+template <int ghost_layers, class Exec, int Dim, class Real, class Device>
 void mark_nodes(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes, const BitRows<Dim>& tiling,
                 const Vector<Dim, int>& grid_cells, LaneBoundary<Dim, Device>& b, bool anew) {
   const Kokkos::RangePolicy<Exec> over_words(exec, 0, tiling.cell_row_count() * tiling.words);
@@ -328,8 +330,9 @@ void mark_nodes(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes, con
                        kernel::FindExterior<Dim, Device>{b.bits, tiling});
   Kokkos::parallel_for("vsb::find_boundary_cells", over_words,
                        kernel::FindBoundary<Dim, Device>{b.bits, tiling});
-  Kokkos::parallel_for("vsb::mark_lane_nodes", Kokkos::RangePolicy<Exec>(exec, 0, tiling.node_row_count()),
-                       kernel::MarkLaneNodes<reach, Dim, Real, Device>{lanes, b, tiling, grid_cells, anew});
+  Kokkos::parallel_for(
+      "vsb::mark_lane_nodes", Kokkos::RangePolicy<Exec>(exec, 0, tiling.node_row_count()),
+      kernel::MarkLaneNodes<ghost_layers, Dim, Real, Device>{lanes, b, tiling, grid_cells, anew});
 }
 
 /// From the tractions of nodes to the loads of groups.

@@ -11,7 +11,7 @@ namespace vsb {
 
 /// The entry of every particle, and the group of every slot.
 template <class Device>
-struct LanePlaces {
+struct LaneIndex {
   Kokkos::View<int*, Device> entry;  ///< [particle]
   Kokkos::View<int*, Device> group;  ///< [slot]
 };
@@ -19,14 +19,14 @@ struct LanePlaces {
 namespace kernel {
 
 template <int Dim, class Real, class Device>
-struct FindPlaces {
+struct IndexLanes {
   CellLanes<Dim, Real, Device> lanes;
-  LanePlaces<Device> places;
+  LaneIndex<Device> index;
   KOKKOS_FUNCTION void operator()(int g) const {
     const auto& group = lanes.groups(g);
-    for (int s = group.first; s < group.first + group.slots; ++s) places.group(s) = g;
+    for (int s = group.first; s < group.first + group.slots; ++s) index.group(s) = g;
     for (size_t e = lanes.begin(group); e < lanes.end(group); ++e)
-      if (lanes.id(e) >= 0) places.entry(lanes.id(e)) = static_cast<int>(e);
+      if (lanes.id(e) >= 0) index.entry(lanes.id(e)) = static_cast<int>(e);
   }
 };
 
@@ -34,11 +34,11 @@ struct FindPlaces {
 template <int Dim, class Real, class Device>
 struct ReadLaneColumns {
   CellLanes<Dim, Real, Device> lanes;
-  LanePlaces<Device> places;
+  LaneIndex<Device> index;
   int first, column, count;
   Kokkos::View<double**, Kokkos::LayoutRight, Device> rows;
   KOKKOS_FUNCTION void operator()(int r) const {
-    const auto e = static_cast<size_t>(places.entry(first + r));
+    const auto e = static_cast<size_t>(index.entry(first + r));
     for (int c = 0; c < count; ++c) rows(r, c) = *lanes.at(column + c, e);
   }
 };
@@ -47,13 +47,13 @@ struct ReadLaneColumns {
 template <int Dim, class Real, class Device>
 struct ReadLanePositions {
   CellLanes<Dim, Real, Device> lanes;
-  LanePlaces<Device> places;
+  LaneIndex<Device> index;
   UniformGrid<Dim, Real> grid;
   int first;
   Kokkos::View<double**, Kokkos::LayoutRight, Device> rows;
   KOKKOS_FUNCTION void operator()(int r) const {
-    const auto e = static_cast<size_t>(places.entry(first + r));
-    const auto& group = lanes.groups(places.group(e / lanes.width));
+    const auto e = static_cast<size_t>(index.entry(first + r));
+    const auto& group = lanes.groups(index.group(e / lanes.width));
     Vector<Dim, Real> xi;
     for (int i = 0; i < Dim; ++i) xi[i] = *lanes.at(lanes.xi_column + i, e);
     const auto x = grid.map(lanes.cell(group, static_cast<int>(e % lanes.width)), xi).x;
@@ -66,13 +66,13 @@ struct ReadLanePositions {
 template <int Dim, class Real, class Device>
 struct FlagLaneParticle {
   CellLanes<Dim, Real, Device> lanes;
-  LanePlaces<Device> places;
+  LaneIndex<Device> index;
   BoundaryNodes<Device> tractions;  ///< [node of the lanes]
   int first;
   Kokkos::View<unsigned char*, Device> flag;
   KOKKOS_FUNCTION void operator()(int r) const {
-    const auto e = static_cast<size_t>(places.entry(first + r));
-    const auto& group = lanes.groups(places.group(e / lanes.width));
+    const auto e = static_cast<size_t>(index.entry(first + r));
+    const auto& group = lanes.groups(index.group(e / lanes.width));
     const int lane = static_cast<int>(e % lanes.width);
     TractionMask any = 0;
     for (int a = 0; a < 1 << Dim; ++a) any |= tractions(group.node[a >> 1] + lane + (a & 1));
@@ -120,16 +120,16 @@ struct UnpackMassPoints {
 
 /// Finds the entries and groups of all particles. They are valid until the next step.
 template <class Exec, int Dim, class Real, class Device>
-LanePlaces<Device> find_places(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes) {
+LaneIndex<Device> index_lanes(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes) {
   const auto ints = [](const std::string& name, int n) {
     return Kokkos::View<int*, Device>(Kokkos::view_alloc(name, Kokkos::WithoutInitializing),
                                       static_cast<size_t>(n));
   };
-  const LanePlaces<Device> places{ints("vsb::lane_entries", lanes.particle_count),
-                                  ints("vsb::lane_group_of_slot", lanes.slot_count)};
-  Kokkos::parallel_for("vsb::find_places", Kokkos::RangePolicy<Exec>(exec, 0, lanes.group_count),
-                       kernel::FindPlaces<Dim, Real, Device>{lanes, places});
-  return places;
+  const LaneIndex<Device> index{ints("vsb::lane_entries", lanes.particle_count),
+                                ints("vsb::lane_group_of_slot", lanes.slot_count)};
+  Kokkos::parallel_for("vsb::index_lanes", Kokkos::RangePolicy<Exec>(exec, 0, lanes.group_count),
+                       kernel::IndexLanes<Dim, Real, Device>{lanes, index});
+  return index;
 }
 
 /// Particles with positions and masses alone, for sums over nodes that need no other field.

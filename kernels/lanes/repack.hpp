@@ -12,17 +12,17 @@ namespace kernel {
 
 /// One list: the particles without a group or slot.
 template <int Dim, class Real, class Device>
-struct UnpackHomeless {
-  Leavers<Dim, Real, Device> leavers;
+struct UnpackOverflow {
+  MigratingParticles<Dim, Real, Device> migrating;
   Particles<Dim, Real, Device> particles;
   UniformGrid<Dim, Real> grid;
   int state_size;  ///< numbers of material state
   KOKKOS_FUNCTION void operator()(int k) const {
     using Columns = CellLanes<Dim, Real, Device>;
-    leavers.for_each_homeless(k, [&](int n, int l) {
-      const auto& head = leavers.head(n);
+    migrating.for_each_overflow(k, [&](int n, int l) {
+      const auto& head = migrating.head(n);
       const int id = head.id[l];
-      const auto number = [&](int column) { return leavers.data(n, column * leavers.width + l); };
+      const auto number = [&](int column) { return migrating.data(n, column * migrating.width + l); };
       Vector<Dim, Real> xi;
       for (int i = 0; i < Dim; ++i) xi[i] = number(Columns::xi_column + i);
       const auto x = grid.map(head.cell[l], xi).x;
@@ -51,14 +51,14 @@ struct CountLanes {
     const auto& group = before.groups(g);
     for (int l = 0; l < width; ++l) {
       int n = 0;
-      for (int s = group.first; s < group.first + group.slots; ++s) n += before.held(s) >> l & 1;
+      for (int s = group.first; s < group.first + group.slots; ++s) n += before.with_particle(s) >> l & 1;
       if (n > 0) count(box.bin_of_cell(before.cell(group, l))) = n;
     }
   }
 };
 
-/// The source of every entry of the new lanes: an entry of the old lanes (>= 0), a leaver (-2 - n), or none
-/// (-1). One group of the old lanes.
+/// The source of every entry of the new lanes: an entry of the old lanes (>= 0), a migrating particle (-2 -
+/// n), or none (-1). One group of the old lanes.
 template <int Dim, class Real, class Device>
 struct FindSources {
   CellLanes<Dim, Real, Device> before, lanes;
@@ -78,43 +78,43 @@ struct FindSources {
       int n = 0;
       for (int s = 0; s < group.slots; ++s) {
         const size_t e = static_cast<size_t>(group.first + s) * width + static_cast<size_t>(l);
-        if (before.held(group.first + s) >> l & 1)
+        if (before.with_particle(group.first + s) >> l & 1)
           source(entry(before.cell(group, l), n++)) = static_cast<int>(e);
       }
     }
   }
 };
 
-/// The leavers without a group or slot, list by list; a single work item. The first launch counts them by
-/// cell; the second finds their entries.
+/// The migrating particles without a group or slot, list by list; a single work item. The first launch counts
+/// them by cell; the second finds their entries.
 template <int Dim, class Real, class Device>
-struct PlaceHomeless {
+struct InsertOverflow {
   FindSources<Dim, Real, Device> find;
-  Leavers<Dim, Real, Device> leavers;
+  MigratingParticles<Dim, Real, Device> migrating;
   BoxBasis<Dim, Real> box;
   typename CellLanes<Dim, Real, Device>::Ints count;
   bool counting;
   KOKKOS_FUNCTION void operator()(int) const {
     for (int k = 0; k < find.before.layers(); ++k)
-      leavers.for_each_homeless(k, [&](int n, int l) {
-        const auto& cell = leavers.head(n).cell[l];
+      migrating.for_each_overflow(k, [&](int n, int l) {
+        const auto& cell = migrating.head(n).cell[l];
         if (counting) {
           ++count(box.bin_of_cell(cell));
           return;
         }
         int s = 0;
         while (find.source(find.entry(cell, s)) != -1) ++s;
-        find.source(find.entry(cell, s)) = -2 - (n * leavers.width + l);
+        find.source(find.entry(cell, s)) = -2 - (n * migrating.width + l);
       });
   }
 };
 
-/// The range of cells that hold particles or will hold a homeless leaver, and the directions in which
-/// particles moved that found no group; a single work item.
+/// The range of cells that hold particles or will hold a particle that found no group or slot, and the
+/// directions in which particles moved that found no group; a single work item.
 template <int Dim, class Real, class Device>
 struct OccupiedRange {
   CellLanes<Dim, Real, Device> lanes;
-  Leavers<Dim, Real, Device> leavers;
+  MigratingParticles<Dim, Real, Device> migrating;
   Vector<Dim, int> grid_cells;
   Kokkos::View<int*, Device> result;  ///< lowest and highest cell by axis, whether any went below or above,
                                       ///< by axis, and the number of a lost particle
@@ -140,21 +140,22 @@ struct OccupiedRange {
         if (cells >> l & 1) include(lanes.cell(group, l));
     }
     for (int k = 0; k < lanes.layers(); ++k)
-      leavers.for_each_homeless(k, [&](int n, int l) {
-        const auto& cell = leavers.head(n).cell[l];
-        const int id = leavers.head(n).id[l];
+      migrating.for_each_overflow(k, [&](int n, int l) {
+        const auto& cell = migrating.head(n).cell[l];
+        const int id = migrating.head(n).id[l];
         bool inside = true;
         for (int i = 0; i < Dim; ++i) inside = inside && cell[i] >= 0 && cell[i] < grid_cells[i];
         if (inside) {
           include(cell);
-          note_way(leavers.head(n), l);
+          note_way(migrating.head(n), l);
         } else if (lost < 0 || id < lost) {
           lost = id;
         }
       });
     result(4 * Dim) = lost;
   }
-  KOKKOS_FUNCTION void note_way(const typename Leavers<Dim, Real, Device>::Head& head, int lane) const {
+  KOKKOS_FUNCTION void note_way(const typename MigratingParticles<Dim, Real, Device>::Head& head,
+                                int lane) const {
     LaneGroup<Dim> from{};
     from.x = head.x;
     from.row = head.row;
@@ -184,17 +185,18 @@ struct TakeColumn {
   using Ints = typename CellLanes<Dim, Real, Device>::Ints;
   Kokkos::View<const Real*, Device> before;
   CellLanes<Dim, Real, Device> lanes;
-  Leavers<Dim, Real, Device> leavers;
+  MigratingParticles<Dim, Real, Device> migrating;
   Ints source;
   int column;
   KOKKOS_FUNCTION void operator()(int g) const {
     const auto& group = lanes.groups(g);
     const Real ghost = column < Dim ? Real(0.5) : Real(0);
     for (size_t e = lanes.begin(group); e < lanes.end(group); ++e) {
-      const int from = source(e), leaver = -2 - from, width = lanes.width;
-      *lanes.at(column, e) = from >= 0     ? before(from)
-                             : leaver >= 0 ? leavers.data(leaver / width, column * width + leaver % width)
-                                           : ghost;
+      const int from = source(e), migrating_entry = -2 - from, width = lanes.width;
+      *lanes.at(column, e) = from >= 0              ? before(from)
+                             : migrating_entry >= 0 ? migrating.data(migrating_entry / width,
+                                                                     column * width + migrating_entry % width)
+                                                    : ghost;
     }
   }
 };
@@ -204,45 +206,46 @@ template <int Dim, class Real, class Device>
 struct TakeIds {
   typename CellLanes<Dim, Real, Device>::Ints before;
   CellLanes<Dim, Real, Device> lanes;
-  Leavers<Dim, Real, Device> leavers;
+  MigratingParticles<Dim, Real, Device> migrating;
   typename CellLanes<Dim, Real, Device>::Ints source;
   KOKKOS_FUNCTION void operator()(int slot) const {
     constexpr int width = Lanes<Real>::width;
-    LaneMask held = 0;
+    LaneMask with_particle = 0;
     for (int l = 0; l < width; ++l) {
-      const int e = slot * width + l, from = source(e), leaver = -2 - from;
-      lanes.id(e) = from >= 0     ? before(from)
-                    : leaver >= 0 ? leavers.head(leaver / width).id[leaver % width]
-                                  : -1;
-      if (from != -1) held |= LaneMask(1) << l;
+      const int e = slot * width + l, from = source(e), migrating_entry = -2 - from;
+      lanes.id(e) = from >= 0 ? before(from)
+                    : migrating_entry >= 0
+                        ? migrating.head(migrating_entry / width).id[migrating_entry % width]
+                        : -1;
+      if (from != -1) with_particle |= LaneMask(1) << l;
     }
-    lanes.held(slot) = held;
+    lanes.with_particle(slot) = with_particle;
   }
 };
 
 }  // namespace kernel
 
-/// Writes the leavers without a group or slot to `particles`; unpack_particles writes all others.
+/// Writes the migrating particles without a group or slot to `particles`; unpack_particles writes all others.
 template <class Exec, int Dim, class Real, class Device>
-void unpack_homeless(const Exec& exec, const LaneMemory<Dim, Real, Device>& m,
+void unpack_overflow(const Exec& exec, const LaneMemory<Dim, Real, Device>& m,
                      const Particles<Dim, Real, Device>& particles) {
   Kokkos::parallel_for(
-      "vsb::unpack_homeless", Kokkos::RangePolicy<Exec>(exec, 0, m.lanes.layers()),
-      kernel::UnpackHomeless<Dim, Real, Device>{m.leavers, particles, m.grid, m.lanes.state_size});
+      "vsb::unpack_overflow", Kokkos::RangePolicy<Exec>(exec, 0, m.lanes.layers()),
+      kernel::UnpackOverflow<Dim, Real, Device>{m.migrating, particles, m.grid, m.lanes.state_size});
 }
 
-/// Packs all particles anew, with the leavers that found no group or slot. reach_out: adds groups in the
-/// directions in which these went. Returns -1, or the lowest number of a particle outside the grid; then
-/// nothing is packed.
+/// Packs all particles anew, with the migrating particles that found no group or slot. extend_margin: adds
+/// groups in the directions in which these went. Returns -1, or the lowest number of a particle outside the
+/// grid; then nothing is packed.
 template <class Exec, int Dim, class Real, class Device>
-int repack_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, bool reach_out = false) {
+int repack_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, bool extend_margin = false) {
   using Cells = CellLanes<Dim, Real, Device>;
   using Ints = typename Cells::Ints;
   const Kokkos::RangePolicy<Exec> once(exec, 0, 1);
   const Cells before = m.lanes;
   const Kokkos::View<int*, Device> range("vsb::occupied_range", 4 * Dim + 1);
   Kokkos::parallel_for("vsb::occupied_range", once,
-                       kernel::OccupiedRange<Dim, Real, Device>{before, m.leavers, m.grid.cells, range});
+                       kernel::OccupiedRange<Dim, Real, Device>{before, m.migrating, m.grid.cells, range});
   exec.fence();
   const auto found = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), range);
   if (found(4 * Dim) >= 0) return found(4 * Dim);
@@ -252,28 +255,28 @@ int repack_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, bool reach_
     highest[i] = found(static_cast<size_t>(2 * i + 1));
     const auto way = static_cast<size_t>(2 * Dim + 2 * i);
     const int far = i == 0 ? 1 : math::min(math::max((highest[i] - lowest[i]) / 4, 2), 8);
-    if (reach_out && found(way) != 0) m.reach.below[i] = far;
-    if (reach_out && found(way + 1) != 0) m.reach.above[i] = far;
+    if (extend_margin && found(way) != 0) m.group_margin.below[i] = far;
+    if (extend_margin && found(way + 1) != 0) m.group_margin.above[i] = far;
   }
-  const kernel::BoxBasis<Dim, Real> basis{m.grid, box_around<Dim, Real>(lowest, highest, m.reach)};
+  const kernel::BoxBasis<Dim, Real> basis{m.grid, box_around<Dim, Real>(lowest, highest, m.group_margin)};
   const Ints count("vsb::particles_of_cell", static_cast<size_t>(basis.bin_count()));
   const Kokkos::RangePolicy<Exec> over_groups(exec, 0, before.group_count);
   Kokkos::parallel_for("vsb::count_lanes", over_groups,
                        kernel::CountLanes<Dim, Real, Device>{before, basis, count});
-  kernel::PlaceHomeless<Dim, Real, Device> place{{before, {}, {}}, m.leavers, basis, count, true};
-  Kokkos::parallel_for("vsb::count_homeless", once, place);
+  kernel::InsertOverflow<Dim, Real, Device> insert{{before, {}, {}}, m.migrating, basis, count, true};
+  Kokkos::parallel_for("vsb::count_overflow", once, insert);
   m.lanes.data = {};  // only `before` holds it now
   m.lanes.id = {};
-  m.lanes.held = {};
+  m.lanes.with_particle = {};
   detail::number_lanes(exec, m, basis.box, count);
   auto& lanes = m.lanes;
   const int entries = lanes.slot_count * lanes.width;
   const Ints source = detail::scratch(m.source, static_cast<size_t>(entries));
   Kokkos::deep_copy(exec, source, -1);
-  place.find = {before, lanes, source};
-  place.counting = false;
-  Kokkos::parallel_for("vsb::find_sources", over_groups, place.find);
-  Kokkos::parallel_for("vsb::place_homeless", once, place);
+  insert.find = {before, lanes, source};
+  insert.counting = false;
+  Kokkos::parallel_for("vsb::find_sources", over_groups, insert.find);
+  Kokkos::parallel_for("vsb::insert_overflow", once, insert);
   const bool fits = static_cast<int>(before.data.extent(0)) >= entries;
   if (fits)
     lanes.data = before.data;
@@ -285,12 +288,12 @@ int repack_lanes(const Exec& exec, LaneMemory<Dim, Real, Device>& m, bool reach_
     Kokkos::parallel_for("vsb::save_column", over_groups,
                          kernel::SaveColumn<Dim, Real, Device>{before, copy, c});
     Kokkos::parallel_for("vsb::take_column", Kokkos::RangePolicy<Exec>(exec, 0, lanes.group_count),
-                         kernel::TakeColumn<Dim, Real, Device>{copy, lanes, m.leavers, source, c});
+                         kernel::TakeColumn<Dim, Real, Device>{copy, lanes, m.migrating, source, c});
   }
   Kokkos::parallel_for("vsb::take_ids", Kokkos::RangePolicy<Exec>(exec, 0, lanes.slot_count),
-                       kernel::TakeIds<Dim, Real, Device>{before.id, lanes, m.leavers, source});
+                       kernel::TakeIds<Dim, Real, Device>{before.id, lanes, m.migrating, source});
   exec.fence();
-  detail::allocate_leavers(exec, m);
+  detail::allocate_migrating(exec, m);
   return -1;
 }
 

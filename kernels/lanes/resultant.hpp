@@ -36,12 +36,12 @@ struct LaneParticle {
     multilinear(there, grid.inverse_spacing, shape.N, shape.dN);
     return true;
   }
-  KOKKOS_FUNCTION Vector<Dim, Real> place(int a) const {
+  KOKKOS_FUNCTION Vector<Dim, Real> position(int a) const {
     Vector<Dim, Real> corner;
     for (int i = 0; i < Dim; ++i) corner[i] = static_cast<Real>(a >> i & 1);
     return grid.map(cell, corner).x;
   }
-  KOKKOS_FUNCTION ComponentMask held(int a, int, int) const {
+  KOKKOS_FUNCTION ComponentMask fixed(int a, int, int) const {
     const int node = shape.node[a];
     ComponentMask components = 0;
     for (int i = 0; i < Dim; ++i)
@@ -51,7 +51,7 @@ struct LaneParticle {
   }
 };
 
-/// The same with quadratic B-splines; `grid` is the dual one.
+/// The same with quadratic B-splines; `grid` is the node-centred one.
 template <int Dim, class Real, class Device>
 struct SplineLaneParticle {
   static constexpr int support = Dim == 1 ? 3 : Dim == 2 ? 9 : 27;
@@ -91,12 +91,12 @@ struct SplineLaneParticle {
     f[axis] = before;
     return true;
   }
-  KOKKOS_FUNCTION Vector<Dim, Real> place(int a) const {
+  KOKKOS_FUNCTION Vector<Dim, Real> position(int a) const {
     Vector<Dim, Real> at;
     for (int i = 0, digits = a; i < Dim; ++i, digits /= 3) at[i] = static_cast<Real>(digits % 3) - Real(0.5);
     return grid.map(cell, at).x;
   }
-  KOKKOS_FUNCTION ComponentMask held(int, int axis, int side) const { return walls.fixed[axis][side]; }
+  KOKKOS_FUNCTION ComponentMask fixed(int, int axis, int side) const { return walls.fixed[axis][side]; }
 };
 
 /// One group: its particles, one by one. Groups without loaded nodes are skipped. Particle: one of the two
@@ -125,8 +125,8 @@ struct LaneResultant {
     p.find(group, lane);
     const Real V = *lanes.at(lanes.volume_column, e);
     const auto x = grid.map(p.cell, p.xi).x;
-    const auto place = [&](int a) { return p.place(a); };
-    add_traction(p.shape, x, V, virtual_stress, among, tractions, place, sum);
+    const auto position = [&](int a) { return p.position(a); };
+    add_traction(p.shape, x, V, virtual_stress, among, tractions, position, sum);
     for (int axis = 0; axis < Dim; ++axis)
       for (int side = 0; side < 2; ++side) {
         CoveredFace<Dim, Real> piece;
@@ -134,7 +134,7 @@ struct LaneResultant {
         if (!find_covered(scene, 0, x, V, covers, axis, side, piece) || !p.move_to_face(axis, side)) continue;
         take_out_support(
             p.shape, piece, virtual_stress, virtual_stress.acting_at(x) & among, tractions,
-            [&](int a) { return p.held(a, axis, side); }, place, sum);
+            [&](int a) { return p.fixed(a, axis, side); }, position, sum);
       }
   }
 };

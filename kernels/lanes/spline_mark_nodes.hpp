@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Algorithm 1 on dual cell lanes, for quadratic B-splines (see kernels/boundary/mark_boundary_nodes.hpp).
-/// Void cells are cells of the scene's grid. A dual cell overlaps 2^Dim of them, each by one corner. N1 has
-/// one ring of nodes more than the nodes of E1 and E2. Ghost nodes are marked as their images are.
+/// Algorithm 1 on node-centred cell lanes, for quadratic B-splines (see
+/// kernels/boundary/mark_boundary_nodes.hpp). Void cells are cells of the scene's grid. A node-centred cell
+/// overlaps 2^Dim of them, each by one corner. N1 has one ring of nodes more than the nodes of E1 and E2.
+/// Ghost nodes are marked as their images are.
 #pragma once
 
 #include <vsb/kernels/lanes/ghosts.hpp>
 
 namespace vsb {
 
-/// [group][corner q of the dual cell; bit i: upper half in direction i]: the lanes with particles there.
+/// [group][corner q of the node-centred cell; bit i: upper half in direction i]: the lanes with particles
+/// there.
 template <class Device>
 using LaneCorners = Kokkos::View<LaneMask**, Kokkos::LayoutRight, Device>;
 
@@ -30,7 +32,7 @@ struct FindCorners {
       for (int i = 0; i < Dim; ++i)
         upper[i] = bits_of(lanes.load(lanes.xi_column + i, entry) >= P(Real(0.5)));
       for (int q = 0; q < 1 << Dim; ++q) {
-        LaneMask here = lanes.held(entry / P::width);
+        LaneMask here = lanes.with_particle(entry / P::width);
         for (int i = 0; i < Dim; ++i) here &= q >> i & 1 ? upper[i] : ~upper[i];
         in[q] |= here;
       }
@@ -40,9 +42,9 @@ struct FindCorners {
 };
 
 /// One row of cells of the scene's grid: which of them hold particles; counts the words that changed. The
-/// lower half of dual cell d is in cell d of the row, the upper one in cell d + 1.
+/// lower half of node-centred cell d is in cell d of the row, the upper one in cell d + 1.
 template <int Dim, class Real, class Device>
-struct OccupyDualLanes {
+struct OccupySplineLanes {
   CellLanes<Dim, Real, Device> lanes;
   LaneCorners<Device> corners;
   typename CellBits<Device>::Rows occupied;
@@ -90,7 +92,7 @@ struct CountMarkedNodes {
       for (int b = 0; b < 64; ++b) {
         if ((mark.boundary.active(r, w) >> b & 1) == 0) continue;
         const TractionMask acting =
-            mark.boundary.marked(r, w) >> b & 1 ? ~TractionMask(0) : mark.boundary.conservative;
+            mark.boundary.marked(r, w) >> b & 1 ? ~TractionMask(0) : mark.boundary.at_all_active_nodes;
         if ((acting & mark.declared(r, 64 * w + b, at)) != 0) ++count;
       }
   }
@@ -101,8 +103,8 @@ struct CountMarkedNodes {
 /// The cells of the scene's grid around the box, as rows of bits; `last` is the grid's last node. Beyond an
 /// open face there is one more layer of cells, as for the particle kernels.
 template <int Dim, class Real, class Device>
-BitRows<Dim> dual_tiling(const CellLanes<Dim, Real, Device>& lanes, const Vector<Dim, int>& last,
-                         const Walls<Dim>& walls) {
+BitRows<Dim> spline_tiling(const CellLanes<Dim, Real, Device>& lanes, const Vector<Dim, int>& last,
+                           const Walls<Dim>& walls) {
   BitRows<Dim> tiling(CellNumbering<Dim>{lanes.box.cells});
   const auto lowest = lanes.lowest_node();
   for (int i = 0; i < Dim; ++i) {
@@ -117,15 +119,15 @@ BitRows<Dim> dual_tiling(const CellLanes<Dim, Real, Device>& lanes, const Vector
 /// Brings bits.occupied and the cells with carried tractions up to date. Returns whether they may have
 /// changed. Waits for the device.
 template <class Exec, int Dim, class Real, class Device>
-bool update_dual_occupied(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes,
-                          LaneCorners<Device>& corners, const LaneBoundary<Dim, Device>& b) {
+bool update_spline_occupied(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes,
+                            LaneCorners<Device>& corners, const LaneBoundary<Dim, Device>& b) {
   const auto groups = static_cast<size_t>(lanes.group_count);
   if (corners.extent(0) < groups) corners = LaneCorners<Device>("vsb::lane_corners", groups, 1 << Dim);
   Kokkos::parallel_for("vsb::find_corners", Kokkos::RangePolicy<Exec>(exec, 0, lanes.group_count),
                        kernel::FindCorners<Dim, Real, Device>{lanes, corners});
   int changes = 0;
-  Kokkos::parallel_reduce("vsb::occupy_dual_lanes", Kokkos::RangePolicy<Exec>(exec, 0, lanes.row_count()),
-                          kernel::OccupyDualLanes<Dim, Real, Device>{lanes, corners, b.bits.occupied},
+  Kokkos::parallel_reduce("vsb::occupy_spline_lanes", Kokkos::RangePolicy<Exec>(exec, 0, lanes.row_count()),
+                          kernel::OccupySplineLanes<Dim, Real, Device>{lanes, corners, b.bits.occupied},
                           changes);
   const bool carried = update_carrying(exec, lanes, b.bits.carried);
   exec.fence();
@@ -141,10 +143,10 @@ Vector<Dim, int> with_ghost_cells(Vector<Dim, int> cells) {
 
 /// From bits.occupied to the loads of nodes and groups; see mark_lanes.
 template <class Exec, int Dim, class Real, class Device>
-void mark_dual_lanes(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes,
-                     const Vector<Dim, int>& last, const Walls<Dim>& walls, const LaneGhosts<Device>& ghosts,
-                     LaneBoundary<Dim, Device>& b, bool anew) {
-  mark_nodes<1>(exec, lanes, dual_tiling(lanes, last, walls), with_ghost_cells(last), b, anew);
+void mark_spline_lanes(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes,
+                       const Vector<Dim, int>& last, const Walls<Dim>& walls,
+                       const LaneGhosts<Device>& ghosts, LaneBoundary<Dim, Device>& b, bool anew) {
+  mark_nodes<1>(exec, lanes, spline_tiling(lanes, last, walls), with_ghost_cells(last), b, anew);
   kernel::for_each_image("vsb::mirror_lane_tractions", exec, ghosts,
                          kernel::MirrorLaneTractions<Device>{ghosts, b.tractions});
   load_groups(exec, lanes, b);
@@ -155,7 +157,7 @@ template <class Exec, int Dim, class Real, class Device>
 int count_marked_nodes(const Exec& exec, const CellLanes<Dim, Real, Device>& lanes,
                        const Vector<Dim, int>& last, const Walls<Dim>& walls,
                        const LaneBoundary<Dim, Device>& b) {
-  const auto tiling = dual_tiling(lanes, last, walls);
+  const auto tiling = spline_tiling(lanes, last, walls);
   int count = 0;
   Kokkos::parallel_reduce(
       "vsb::count_marked_nodes", Kokkos::RangePolicy<Exec>(exec, 0, tiling.node_row_count()),

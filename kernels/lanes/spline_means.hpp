@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The mean divergence on dual cell lanes (physics/mean_divergence.hpp), between the re-map and sweep C:
+/// The mean divergence on node-centred cell lanes (physics/mean_divergence.hpp), between the re-map and sweep
+/// C:
 ///   theta_c = sum_p V_p M_c(x_p) theta_p / sum_p V_p M_c(x_p),   theta_p = dt tr L_p.
 /// The functions M_c are multilinear around the centres c of the scene's cells. These centres are the corners
-/// of the dual cells, so that a particle always has the same 2^Dim functions.
+/// of the node-centred cells, so that a particle always has the same 2^Dim functions.
 ///
 /// The values of centre c are stored at the lowest node of its cell: the sums of V M_c and V M_c theta in the
 /// columns of the momentum, and the means theta_c in those of the increment dt a. Both are free between the
@@ -15,16 +16,16 @@
 
 namespace vsb {
 
-/// The range of xi in which the functions M_c of a dual cell vary, per lane. Beside a wall the function of
-/// the centre inside is constant.
+/// The range of xi in which the functions M_c of a node-centred cell vary, per lane. Beside a wall the
+/// function of the centre inside is constant.
 template <int Dim, class P>
-struct CentreRoom {
+struct CentreRange {
   ///@{
   /// Per lane, in [0, 1].
   Vector<Dim, P> least, most;
   ///@}
   /// xi limited to the range, component by component.
-  KOKKOS_FORCEINLINE_FUNCTION Vector<Dim, P> place(const Vector<Dim, P>& xi) const {
+  KOKKOS_FORCEINLINE_FUNCTION Vector<Dim, P> clamp(const Vector<Dim, P>& xi) const {
     Vector<Dim, P> along;
     static_for<Dim>([&](auto i) VSB_UNROLLED {
       const P above = math::select(xi[i] > least[i], xi[i], least[i]);
@@ -34,26 +35,26 @@ struct CentreRoom {
   }
 };
 
-/// `grid` is the dual grid.
+/// `grid` is the node-centred grid.
 template <int Dim, class Real, class Device>
-KOKKOS_FUNCTION CentreRoom<Dim, typename Lanes<Real>::Pack> centre_room_of(
+KOKKOS_FUNCTION CentreRange<Dim, typename Lanes<Real>::Pack> centre_range_of(
     const CellLanes<Dim, Real, Device>& lanes, const LaneGroup<Dim>& group,
     const UniformGrid<Dim, Real>& grid, const Walls<Dim>& walls) {
   using P = typename Lanes<Real>::Pack;
-  CentreRoom<Dim, P> room;
+  CentreRange<Dim, P> range;
   for (int i = 0; i < Dim; ++i) {
-    room.least[i] = P(Real(0));
-    room.most[i] = P(Real(1));
+    range.least[i] = P(Real(0));
+    range.most[i] = P(Real(1));
     for (int l = 0; l < P::width; ++l) {
       const int node = lanes.cell(group, l)[i];
-      if (node == 0 && walls.mirrored(i, 0)) room.least[i].set(l, Real(1));
-      if (node == grid.cells[i] - 1 && walls.mirrored(i, 1)) room.most[i].set(l, Real(0));
+      if (node == 0 && walls.mirrored(i, 0)) range.least[i].set(l, Real(1));
+      if (node == grid.cells[i] - 1 && walls.mirrored(i, 1)) range.most[i].set(l, Real(0));
     }
   }
-  return room;
+  return range;
 }
 
-/// The row of a stencil that stores the centres at corners 2 r and 2 r + 1 of a dual cell.
+/// The row of a stencil that stores the centres at corners 2 r and 2 r + 1 of a node-centred cell.
 constexpr int centre_row(int r) {
   return (r >> 1) * 3 + (r & 1);
 }
@@ -68,7 +69,7 @@ struct SumLaneDivergence {
   using Sums = SplineLayerSums<1, 2, Dim, Real, Device>;
   CellLanes<Dim, Real, Device> lanes;
   Nodes nodes;
-  UniformGrid<Dim, Real> grid;  ///< dual
+  UniformGrid<Dim, Real> grid;  ///< node-centred
   Walls<Dim> walls;
 
   KOKKOS_FUNCTION void operator()(int layer) const {
@@ -82,13 +83,13 @@ struct SumLaneDivergence {
   [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void add(const LaneGroup<Dim>& group, Sums& sums) const {
     const auto& stencil = lanes.stencils(lanes.number_of(group));
     const auto theta = divergence_of(stencil);
-    const auto room = centre_room_of(lanes, group, grid, walls);
+    const auto range = centre_range_of(lanes, group, grid, walls);
     CellPolynomial<Dim, P> V_M, V_M_theta;
     lane_sums::set_zero<Dim>(V_M);
     lane_sums::set_zero<Dim>(V_M_theta);
     for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
       const auto xi = lanes.load_xi(entry);
-      const auto above = room.place(xi);
+      const auto above = range.clamp(xi);
       const P value = quadratic_at<Dim>(theta, Powers<Dim, P>(xi));
       CellPolynomial<Dim, P> M;
       M[0] = lanes.load(lanes.volume_column, entry);
@@ -106,7 +107,8 @@ struct SumLaneDivergence {
     set_down(1, stencil, V_M, sums);
     set_down(2, stencil, V_M_theta, sums);
   }
-  /// dt tr L in a dual cell. Along direction i, r_1 has the slope 1 = r_0, and r_2 the slope r_1 - r_0 / 2.
+  /// dt tr L in a node-centred cell. Along direction i, r_1 has the slope 1 = r_0, and r_2 the slope r_1 -
+  /// r_0 / 2.
   KOKKOS_FORCEINLINE_FUNCTION QuadraticPolynomial<Dim, P> divergence_of(
       const LaneStencil<Dim>& stencil) const {
     QuadraticPolynomial<Dim, P> theta;
@@ -143,15 +145,15 @@ struct SumLaneDivergence {
 template <class Device>
 struct SmallMeans {
   ///@{
-  /// [chunk]: small functions; those that others merge into.
-  Kokkos::View<LaneMask*, Device> small, taken;
+  /// [node group]: small; merged into by others.
+  Kokkos::View<LaneMask*, Device> small, merging;
   ///@}
-  Kokkos::View<int*, Device> home;  ///< [node]: of a small function, the node it merges into
+  Kokkos::View<int*, Device> merged_into;  ///< [node]: of a small function, the node it merges into
 };
 
 namespace kernel {
 
-/// theta_c of a chunk without merging; marks the small functions.
+/// theta_c of a node group without merging; marks the small functions.
 template <int Dim, class Real, class Device>
 struct DivideLaneSums : LaneNodeRows<Dim, Real, Device, 3> {
   using Base = LaneNodeRows<Dim, Real, Device, 3>;
@@ -160,17 +162,17 @@ struct DivideLaneSums : LaneNodeRows<Dim, Real, Device, 3> {
   Real least;  ///< m^Dim
   SmallMeans<Device> means;
 
-  KOKKOS_FUNCTION void operator()(int chunk) const {
-    const int node = chunk * P::width;
+  KOKKOS_FUNCTION void operator()(int node_group) const {
+    const int node = node_group * P::width;
     const P V = this->sum(1, node), V_theta = this->sum(2, node), zero(Real(0));
     const auto some = V > zero;
     math::select(some, V_theta / V, zero).store(nodes.at(nodes.increment_column, node));
-    means.small(chunk) = bits_of(some & (V < P(least)));
-    means.taken(chunk) = 0;
+    means.small(node_group) = bits_of(some & (V < P(least)));
+    means.merging(node_group) = 0;
   }
 };
 
-/// The functions at the nodes of a chunk, and access to their neighbours.
+/// The functions at the nodes of a node group, and access to their neighbours.
 template <int Dim, class Real, class Device>
 struct LaneMeans {
   CellLanes<Dim, Real, Device> lanes;
@@ -179,22 +181,22 @@ struct LaneMeans {
   SmallMeans<Device> means;
   Vector<Dim, int> first;  ///< the cell whose function is at the lowest node of the box
 
-  /// Calls work(cell, node) for the nodes of a chunk, by its place in the box, whose bits are set in
-  /// bits(chunk).
+  /// Calls work(cell, node) for the nodes of a node group, by its index in the box, whose bits are set in
+  /// bits(node_group).
   template <class Work>
-  KOKKOS_FORCEINLINE_FUNCTION void for_each(const Kokkos::View<LaneMask*, Device>& bits, int place,
+  KOKKOS_FORCEINLINE_FUNCTION void for_each(const Kokkos::View<LaneMask*, Device>& bits, int box_index,
                                             const Work& work) const {
-    const int chunk = lanes.chunk_at(place);
-    if (chunk < 0 || bits(chunk) == 0) return;
+    const int node_group = lanes.node_group_at(box_index);
+    if (node_group < 0 || bits(node_group) == 0) return;
     const int per_row = lanes.groups_per_row() + 1;
     auto cell = first;
-    cell[0] += place % per_row * lanes.width;
-    for (int i = 1, row = place / per_row; i < Dim; ++i) {
+    cell[0] += box_index % per_row * lanes.width;
+    for (int i = 1, row = box_index / per_row; i < Dim; ++i) {
       cell[i] += row % (lanes.box.cells[i] + 1);
       row /= lanes.box.cells[i] + 1;
     }
     for (int l = 0; l < lanes.width; ++l, ++cell[0])
-      if (bits(chunk) >> l & 1) work(cell, chunk * lanes.width + l);
+      if (bits(node_group) >> l & 1) work(cell, node_group * lanes.width + l);
   }
   /// The node of a cell's function, or -1.
   KOKKOS_FORCEINLINE_FUNCTION int node_of(const Vector<Dim, int>& cell) const {
@@ -224,30 +226,31 @@ struct LaneMeans {
 
 /// Finds the function that each small function merges into.
 template <int Dim, class Real, class Device>
-struct FindHomes : LaneMeans<Dim, Real, Device> {
-  KOKKOS_FUNCTION void operator()(int place) const {
-    this->for_each(this->means.small, place, [&](const auto& cell, int node) {
-      const int home = this->node_of(this->functions.home_of(cell, [&](const auto& c) {
+struct FindMergedMeans : LaneMeans<Dim, Real, Device> {
+  KOKKOS_FUNCTION void operator()(int box_index) const {
+    this->for_each(this->means.small, box_index, [&](const auto& cell, int node) {
+      const int merged_into = this->node_of(this->functions.merged_function(cell, [&](const auto& c) {
         const int there = this->node_of(c);
         return there < 0 ? Real(0) : this->sum(1, there);
       }));
-      this->means.home(node) = home;
+      this->means.merged_into(node) = merged_into;
       constexpr int width = Lanes<Real>::width;
-      if (home != node)
-        Kokkos::atomic_fetch_or(&this->means.taken(home / width), LaneMask(1) << home % width);
+      if (merged_into != node)
+        Kokkos::atomic_fetch_or(&this->means.merging(merged_into / width), LaneMask(1)
+                                                                               << merged_into % width);
     });
   }
 };
 
 /// theta_c of the functions that small ones merge into: the mean over all of them.
 template <int Dim, class Real, class Device>
-struct TakeInSmallMeans : LaneMeans<Dim, Real, Device> {
-  KOKKOS_FUNCTION void operator()(int place) const {
-    this->for_each(this->means.taken, place, [&](const auto& cell, int node) {
+struct MergeSmallMeans : LaneMeans<Dim, Real, Device> {
+  KOKKOS_FUNCTION void operator()(int box_index) const {
+    this->for_each(this->means.merging, box_index, [&](const auto& cell, int node) {
       Real volume = this->sum(1, node), divergence = this->sum(2, node);
       this->functions.for_each_neighbour(cell, [&](const auto& c) {
         const int there = this->node_of(c);
-        if (there < 0 || !this->is_small(there) || this->means.home(there) != node) return;
+        if (there < 0 || !this->is_small(there) || this->means.merged_into(there) != node) return;
         volume += this->sum(1, there);
         divergence += this->sum(2, there);
       });
@@ -258,10 +261,11 @@ struct TakeInSmallMeans : LaneMeans<Dim, Real, Device> {
 
 /// theta_c of small functions: that of the function they merge into.
 template <int Dim, class Real, class Device>
-struct GiveBackMeans : LaneMeans<Dim, Real, Device> {
-  KOKKOS_FUNCTION void operator()(int place) const {
-    this->for_each(this->means.small, place,
-                   [&](const auto&, int node) { this->theta(node) = this->theta(this->means.home(node)); });
+struct CopyMergedMeans : LaneMeans<Dim, Real, Device> {
+  KOKKOS_FUNCTION void operator()(int box_index) const {
+    this->for_each(this->means.small, box_index, [&](const auto&, int node) {
+      this->theta(node) = this->theta(this->means.merged_into(node));
+    });
   }
 };
 
@@ -273,12 +277,13 @@ template <class Exec, int Dim, class Real, class Device>
 void average_lane_divergence(const Exec& exec, const LaneState<Dim, Real, Device>& s,
                              const UniformGrid<Dim, Real>& grid, SmallMeans<Device>& small) {
   const auto& m = s.memory;
-  const int chunks = m.lanes.node_count / m.lanes.width;
-  if (static_cast<int>(small.small.extent(0)) < chunks) {
-    const auto n = static_cast<size_t>(chunks);
+  const int node_groups = m.lanes.node_count / m.lanes.width;
+  if (static_cast<int>(small.small.extent(0)) < node_groups) {
+    const auto n = static_cast<size_t>(node_groups);
     small.small = Kokkos::View<LaneMask*, Device>("vsb::small_means", n);
-    small.taken = Kokkos::View<LaneMask*, Device>("vsb::taking_means", n);
-    small.home = Kokkos::View<int*, Device>("vsb::homes_of_means", n * static_cast<size_t>(m.lanes.width));
+    small.merging = Kokkos::View<LaneMask*, Device>("vsb::merging_means", n);
+    small.merged_into =
+        Kokkos::View<int*, Device>("vsb::merged_means", n * static_cast<size_t>(m.lanes.width));
   }
   kernel::LaneMeans<Dim, Real, Device> at{
       m.lanes, {m.nodes}, {with_ghost_layer(grid), m.walls}, small, m.lanes.lowest_node()};
@@ -286,12 +291,12 @@ void average_lane_divergence(const Exec& exec, const LaneState<Dim, Real, Device
   Kokkos::parallel_for("vsb::sum_lane_divergence", detail::over_layers(exec, s),
                        kernel::SumLaneDivergence<Dim, Real, Device>{m.lanes, m.nodes, m.grid, m.walls});
   Kokkos::parallel_for(
-      "vsb::divide_lane_sums", Kokkos::RangePolicy<Exec>(exec, 0, chunks),
+      "vsb::divide_lane_sums", Kokkos::RangePolicy<Exec>(exec, 0, node_groups),
       kernel::DivideLaneSums<Dim, Real, Device>{{m.nodes}, at.functions.least_volume(), small});
-  const Kokkos::RangePolicy<Exec> places(exec, 0, static_cast<int>(m.lanes.chunk_at.extent(0)));
-  Kokkos::parallel_for("vsb::find_homes_of_means", places, kernel::FindHomes<Dim, Real, Device>{at});
-  Kokkos::parallel_for("vsb::take_in_small_means", places, kernel::TakeInSmallMeans<Dim, Real, Device>{at});
-  Kokkos::parallel_for("vsb::give_back_means", places, kernel::GiveBackMeans<Dim, Real, Device>{at});
+  const Kokkos::RangePolicy<Exec> over_box(exec, 0, static_cast<int>(m.lanes.node_group_at.extent(0)));
+  Kokkos::parallel_for("vsb::find_merged_means", over_box, kernel::FindMergedMeans<Dim, Real, Device>{at});
+  Kokkos::parallel_for("vsb::merge_small_means", over_box, kernel::MergeSmallMeans<Dim, Real, Device>{at});
+  Kokkos::parallel_for("vsb::copy_merged_means", over_box, kernel::CopyMergedMeans<Dim, Real, Device>{at});
 }
 
 }  // namespace vsb

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Gather and scatter between the nodes of a group of dual cell lanes and quadratic polynomials on its cells,
-/// one cell per lane (see kernels/lanes/scatter.hpp).
+/// Gather and scatter between the nodes of a group of node-centred cell lanes and quadratic polynomials on
+/// its cells, one cell per lane (see kernels/lanes/scatter.hpp).
 #pragma once
 
 #include <vsb/physics/quadratic_polynomial.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Scatter of a single particle of dual cell lanes to its nodes: the quadratic B-splines N_I(x_p) at its
-/// position, and the sums of the layer to which they are added.
+/// Scatter of a single particle of node-centred cell lanes to its nodes: the quadratic B-splines N_I(x_p) at
+/// its position, and the sums of the layer to which they are added.
 #pragma once
 
 #include <vsb/physics/quadratic_bspline_basis.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The sums over the particles p of a group of dual cell lanes at its nodes I with quadratic B-splines,
-/// Eq. (10), Eq. (11):
+/// The sums over the particles p of a group of node-centred cell lanes at its nodes I with quadratic
+/// B-splines, Eq. (10), Eq. (11):
 ///   mass        m_I = sum_p m_p N_I(x_p),
 ///   momentum    p_I = sum_p m_p v_p N_I(x_p),
 ///   force       f_I = -sum_p V_p sigma_p . grad N_I(x_p).

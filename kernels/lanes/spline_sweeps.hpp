@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The sweeps over dual cell lanes of one MUSL step with quadratic B-splines, a layer each call: A, B, C, and
-/// C with A of the next step, as in kernels/lanes/sweeps.hpp.
+/// The sweeps over node-centred cell lanes of one MUSL step with quadratic B-splines, a layer each call: A,
+/// B, C, and C with A of the next step, as in kernels/lanes/sweeps.hpp.
 ///
-/// The corner of the dual cell that holds a particle tells the cell of the scene's grid that holds it. C
-/// notes the layers in which it changes, for Algorithm 1. The mean divergence, if asked for, is a sweep of
-/// its own before C (kernels/lanes/spline_means.hpp).
+/// The corner of the node-centred cell that holds a particle tells the cell of the scene's grid that holds
+/// it. C notes the layers in which it changes, for Algorithm 1. The mean divergence, if asked for, is a sweep
+/// of its own before C (kernels/lanes/spline_means.hpp).
 #pragma once
 
 #include <vsb/kernels/lanes/spline_means.hpp>
@@ -86,8 +86,8 @@ struct MoveSplineGroup : MoveGroup<false, Material, Volume, Dim, Real, Device> {
   Walls<Dim> walls;
 
   /// The range of xi in which a particle stays in its cell. The faces of the grid go through the middle of
-  /// the outermost dual cells.
-  struct Room {
+  /// the outermost node-centred cells.
+  struct CellRange {
     Vector<Dim, P> first, end;
     KOKKOS_FORCEINLINE_FUNCTION bool holds(const Vector<Dim, P>& xi) const {
       auto inside = (xi[0] >= first[0]) & (xi[0] < end[0]);
@@ -97,21 +97,21 @@ struct MoveSplineGroup : MoveGroup<false, Material, Volume, Dim, Real, Device> {
       return !any(!inside);
     }
   };
-  KOKKOS_FUNCTION Room room_of(const LaneGroup<Dim>& group) const {
-    Room room;
+  KOKKOS_FUNCTION CellRange range_of(const LaneGroup<Dim>& group) const {
+    CellRange range;
     for (int i = 0; i < Dim; ++i) {
-      room.first[i] = P(Real(0));
-      room.end[i] = P(Real(1));
+      range.first[i] = P(Real(0));
+      range.end[i] = P(Real(1));
       const int last = grid.cells[i] - 1;
       // A ghost at the middle of a cell stays. to_next_cell finds what is outside by more than round-off.
       constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
       for (int l = 0; l < P::width; ++l) {
         const int cell = lanes.cell(group, l)[i];
-        if (cell == 0) room.first[i].set(l, Real(0.5) - epsilon);
-        if (cell == last) room.end[i].set(l, Real(0.5) + epsilon);
+        if (cell == 0) range.first[i].set(l, Real(0.5) - epsilon);
+        if (cell == last) range.end[i].set(l, Real(0.5) + epsilon);
       }
     }
-    return room;
+    return range;
   }
 
   KOKKOS_FORCEINLINE_FUNCTION void operator()(const LaneGroup<Dim>& group, int layer) const {
@@ -129,11 +129,11 @@ struct MoveSplineGroup : MoveGroup<false, Material, Volume, Dim, Real, Device> {
       coefficients_of(nodes, nodes.displacement_column + i, stencil, dx[i]);
       coefficients_of(nodes, nodes.remapped_column + i, stencil, u[i]);
     });
-    const Room room = room_of(group);
-    CentreRoom<Dim, P> centres;
+    const CellRange range = range_of(group);
+    CentreRange<Dim, P> centres;
     CellPolynomial<Dim, P> mean;
     if constexpr (averaged) {
-      centres = centre_room_of(lanes, group, grid, walls);
+      centres = centre_range_of(lanes, group, grid, walls);
       means_around(stencil, mean);
     }
     for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
@@ -146,7 +146,7 @@ struct MoveSplineGroup : MoveGroup<false, Material, Volume, Dim, Real, Device> {
         });
       });
       if constexpr (averaged)
-        L = with_mean_divergence(L, value_at<Dim>(mean, centres.place(xi.first)), P(beta));
+        L = with_mean_divergence(L, value_at<Dim>(mean, centres.clamp(xi.first)), P(beta));
       this->advance(entry, L);
       const P V = lanes.load(lanes.volume_column, entry);
       lanes.store(lanes.volume_column, entry, volume(V, L, P(1)));
@@ -154,7 +154,7 @@ struct MoveSplineGroup : MoveGroup<false, Material, Volume, Dim, Real, Device> {
       static_for<Dim>([&](auto i) VSB_UNROLLED { moved[i] = xi.first[i] + quadratic_at<Dim>(dx[i], xi); });
       lanes.store_row(lanes.xi_column, entry, moved);
       note_crossing(layer, entry, xi.first, moved);
-      if (!room.holds(moved)) this->leave(group, layer, entry);
+      if (!range.holds(moved)) this->copy_migrating(group, layer, entry);
     }
   }
   /// The coefficients of the mean divergence between the centres.
@@ -173,7 +173,8 @@ struct MoveSplineGroup : MoveGroup<false, Material, Volume, Dim, Real, Device> {
       different =
           different | ((before[i] < half) & (after[i] >= half)) | ((before[i] >= half) & (after[i] < half));
     });
-    if (any(different) && (bits_of(different) & lanes.held(entry / P::width)) != 0) crossed(layer) = 1;
+    if (any(different) && (bits_of(different) & lanes.with_particle(entry / P::width)) != 0)
+      crossed(layer) = 1;
   }
 };
 
@@ -189,9 +190,9 @@ struct MoveSplineLanes {
     move.crossed(layer) = 0;
     const auto move_group = [&](const auto& group) { move(group, layer); };
     if (!and_sum)
-      return move_layer(on.lanes, move.leavers, layer, false, move_group, [](const auto&, int) {});
+      return move_layer(on.lanes, move.migrating, layer, false, move_group, [](const auto&, int) {});
     SplineStepSums<Dim, Real, Device> sums(on.lanes, move.nodes, layer);
-    move_layer(on.lanes, move.leavers, layer, true, move_group, [&](const auto& group, int g) {
+    move_layer(on.lanes, move.migrating, layer, true, move_group, [&](const auto& group, int g) {
       sums.begin(group, on.lanes.stencils(g));
       sum_spline_group(on, group, virtual_stress, sums);
     });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// The sums of a group of dual cell lanes with loaded nodes: those of kernels/lanes/spline_sums.hpp, and at
-/// the loaded nodes I the virtual stress, Eq. (27), Eq. (28):
+/// The sums of a group of node-centred cell lanes with loaded nodes: those of kernels/lanes/spline_sums.hpp,
+/// and at the loaded nodes I the virtual stress, Eq. (27), Eq. (28):
 ///   f_I <- f_I + sum_p V_p (sbar(x_p) . grad N_I(x_p) + fbar(x_p) N_I(x_p)).
 ///
 /// Three ways to compute this sum:
@@ -73,10 +73,10 @@ template <class Field, int Dim, class Real, class Device, class P>
                                                 VirtualStressValue<Dim, P>& bar) {
   const auto xi = on.lanes.load_xi(entry);
   const P V = on.lanes.load(on.lanes.volume_column, entry);
-  const LaneMask held = on.lanes.held(entry / P::width);
+  const LaneMask with_particle = on.lanes.with_particle(entry / P::width);
   for (int l = 0; l < P::width; ++l) {
     auto at = VirtualStressValue<Dim, Real>::zero();
-    if (held >> l & 1) {  // a field need not be finite at the position of a ghost
+    if (with_particle >> l & 1) {  // a field need not be finite at the position of a ghost
       Vector<Dim, Real> xi_l;
       for (int i = 0; i < Dim; ++i) xi_l[i] = xi[i][l];
       at = field.at(on.grid.map(on.lanes.cell(group, l), xi_l).x, tractions);

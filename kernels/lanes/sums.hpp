@@ -75,7 +75,7 @@ KOKKOS_FORCEINLINE_FUNCTION void momentum(const CellLanes<Dim, Real, Device>& la
 }
 
 /// The moments of force, -sum_p V_p sigma_p . grad q_k(xi_p). stress(entry): sigma_p, or sigma_p - sbar.
-template <bool Cubic, int Dim, class Real, class Device, class Stress, class P>
+template <bool EqualSpacing, int Dim, class Real, class Device, class Stress, class P>
 KOKKOS_FORCEINLINE_FUNCTION void force(const CellLanes<Dim, Real, Device>& lanes, const LaneGroup<Dim>& group,
                                        const Vector<Dim, Real>& inverse_spacing, const Stress& stress,
                                        CellPolynomial<Dim, P> (&f)[Dim]) {
@@ -84,8 +84,8 @@ KOKKOS_FORCEINLINE_FUNCTION void force(const CellLanes<Dim, Real, Device>& lanes
     const auto q = monomials<Dim>(lanes.load_xi(entry));
     const P V = lanes.load(lanes.volume_column, entry);
     auto s = stress(entry);
-    // In cubic cells all components have the same 1 / h.
-    const P weight = Cubic ? P(V * P(-inverse_spacing[0])) : -V;
+    // With equal spacing all components have the same 1 / h.
+    const P weight = EqualSpacing ? P(V * P(-inverse_spacing[0])) : -V;
     static_for<s.size>([&](auto c) VSB_UNROLLED {
       if constexpr (Dim > 1 ? (Dim == 3 || c != 2) : c == 0) s[c] = s[c] * weight;
     });
@@ -93,7 +93,7 @@ KOKKOS_FORCEINLINE_FUNCTION void force(const CellLanes<Dim, Real, Device>& lanes
       Vector<Dim, P> w;
       static_for<Dim>([&](auto i) VSB_UNROLLED {
         w[i] = s[symmetric_index(a, i)];
-        if constexpr (!Cubic) w[i] *= P(inverse_spacing[i]);
+        if constexpr (!EqualSpacing) w[i] *= P(inverse_spacing[i]);
       });
       add_gradient_moments<Dim>(f[a], w, q);
     });
@@ -113,7 +113,7 @@ KOKKOS_FORCEINLINE_FUNCTION void add_mass_and_momentum(const CellLanes<Dim, Real
                                                        const LaneGroup<Dim>& group,
                                                        StepSums<Dim, Real, Device>& sums) {
   CellPolynomial<Dim, typename Lanes<Real>::Pack> m, p[Dim];
-  if (lanes.one_sweep())
+  if (lanes.remaps_by_mass_matrix())
     mass_matrices(lanes, group, m);
   else
     mass(lanes, group, m);
@@ -125,7 +125,7 @@ KOKKOS_FORCEINLINE_FUNCTION void add_mass_and_momentum(const CellLanes<Dim, Real
 }  // namespace lane_sums
 
 /// Adds mass, momentum and force of a group without virtual stress to its nodes.
-template <bool Cubic, int Dim, class Real, class Device>
+template <bool EqualSpacing, int Dim, class Real, class Device>
 [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void sum_group(const CellLanes<Dim, Real, Device>& lanes,
                                                                const LaneGroup<Dim>& group,
                                                                const Vector<Dim, Real>& inverse_spacing,
@@ -134,7 +134,7 @@ template <bool Cubic, int Dim, class Real, class Device>
   using P = typename Lanes<Real>::Pack;
   add_mass_and_momentum(lanes, group, sums);
   CellPolynomial<Dim, P> f[Dim];
-  force<Cubic>(
+  force<EqualSpacing>(
       lanes, group, inverse_spacing, [&](size_t entry) { return lanes.load_stress(entry); }, f);
   static_for<Dim>([&](auto i) VSB_UNROLLED { sums.add_moments(1 + Dim + i, group, f[i]); });
 }

@@ -111,7 +111,7 @@ struct MoveLaneSurfacePoints {
   LaneSurfacePoints<Dim, Real, Device> points;
   UniformGrid<Dim, Real> grid;
 
-  KOKKOS_FUNCTION void operator()(int run, int& leaving) const {
+  KOKKOS_FUNCTION void operator()(int run, int& crossing) const {
     const int cell = points.run_cell(run);
     int node[1 << Dim];
     lanes.nodes_of_cell(cell / lanes.box.cells[0], cell % lanes.box.cells[0], node);
@@ -122,7 +122,7 @@ struct MoveLaneSurfacePoints {
       coefficients_from_nodes<Dim>(u[i]);
     }
     for (int n = points.run_first(run); n < points.run_first(run + 1); ++n)
-      if (move(points.order(n), dx, u)) ++leaving;
+      if (move(points.order(n), dx, u)) ++crossing;
   }
   KOKKOS_FUNCTION void gather(int column, const int (&node)[1 << Dim], CellPolynomial<Dim, Real>& c) const {
     for (int a = 0; a < 1 << Dim; ++a) c[a] = node[a] < 0 ? Real(0) : *nodes.at(column, node[a]);
@@ -266,12 +266,12 @@ void move_surface_points(const Exec& exec, const LaneMemory<Dim, Real, Device>& 
                          LaneSurfacePoints<Dim, Real, Device>& points) {
   if (points.count() == 0) return;
   sort_surface_points(exec, m, points);
-  int leaving = 0;
+  int crossing = 0;
   Kokkos::parallel_reduce("vsb::move_lane_surface", Kokkos::RangePolicy<Exec>(exec, 0, points.runs),
                           kernel::MoveLaneSurfacePoints<Dim, Real, Device>{m.lanes, m.nodes, points, m.grid},
-                          leaving);
+                          crossing);
   exec.fence();
-  if (leaving > 0) points.sorted = false;
+  if (crossing > 0) points.sorted = false;
 }
 
 /// Adds the tractions on the points to the nodes' sums. Returns -1, or the lowest number of a point outside

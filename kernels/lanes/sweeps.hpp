@@ -6,7 +6,7 @@
 ///   B  FLIP, v_p <- v_p + dt sum_I N_Ip a_I, and the momentum of the re-map, p*_I = sum_p N_Ip m_p v_p;
 ///   C  L = sum_I v*_I (x) grad N_Ip,  sigma <- material(sigma, L dt),
 ///      V <- V det(I + dt L) or V exp(dt tr L),  x_p <- x_p + dt sum_I N_Ip v_I.
-///      Particles that leave their cell go to the layer's list of leavers.
+///      Particles that leave their cell go to the layer's list of migrating particles.
 /// C of a step and A of the next one are one sweep: a particle is read and written once for both.
 ///
 /// The nodes store dt a, dt v in cells and dt v* in cells, so that the particles only interpolate.
@@ -41,7 +41,7 @@ KOKKOS_FORCEINLINE_FUNCTION void for_each_group(const CellLanes<Dim, Real, Devic
 }
 
 /// Sweep A.
-template <bool Cubic, class Field, int Dim, class Real, class Device>
+template <bool EqualSpacing, class Field, int Dim, class Real, class Device>
 struct SumLanes {
   LoadedLanes<Dim, Real, Device> on;
   LaneNodes<Dim, Real, Device> nodes;
@@ -54,7 +54,7 @@ struct SumLanes {
     sums.begin_anew(on.lanes, layer);
     for_each_group(on.lanes, layer, [&](const auto& group, int) {
       sums.begin(group);
-      sum_group_with<Cubic>(on, group, virtual_stress, sums);
+      sum_group_with<EqualSpacing>(on, group, virtual_stress, sums);
     });
     sums.end();
   }
@@ -132,7 +132,7 @@ struct RemapLanes {
 };
 
 /// Sweep C for one group.
-template <bool Cubic, class Material, class Volume, int Dim, class Real, class Device>
+template <bool EqualSpacing, class Material, class Volume, int Dim, class Real, class Device>
 struct MoveGroup {
   using P = typename Lanes<Real>::Pack;
   CellLanes<Dim, Real, Device> lanes;
@@ -140,7 +140,7 @@ struct MoveGroup {
   UniformGrid<Dim, Real> grid;
   Material material;
   Volume volume;
-  Leavers<Dim, Real, Device> leavers;
+  MigratingParticles<Dim, Real, Device> migrating;
   Real beta = 0;  ///< share of the divergence that a mean replaces (physics/mean_divergence.hpp)
 
   KOKKOS_FORCEINLINE_FUNCTION void operator()(const LaneGroup<Dim>& group, int layer) const {
@@ -166,7 +166,7 @@ struct MoveGroup {
       static_for<Dim>([&](auto i) VSB_UNROLLED {
         static_for<Dim>([&](auto j) VSB_UNROLLED {
           L(i, j) = derivative_at<j, Dim>(u[i], xi);
-          if constexpr (!Cubic) L(i, j) *= P(grid.inverse_spacing[j] * grid.spacing[0]);
+          if constexpr (!EqualSpacing) L(i, j) *= P(grid.inverse_spacing[j] * grid.spacing[0]);
         });
       });
       if constexpr (averaged) L = with_mean_divergence(L, mean, P(beta));
@@ -177,7 +177,7 @@ struct MoveGroup {
       Vector<Dim, P> moved;
       static_for<Dim>([&](auto i) VSB_UNROLLED { moved[i] = xi[i] + N.interpolate(dx[i]); });
       lanes.store_row(lanes.xi_column, entry, moved);
-      if (!all_off_the_faces(moved)) leave(group, layer, entry);
+      if (!all_off_the_faces(moved)) copy_migrating(group, layer, entry);
     }
   }
   /// Whether all are in their cell as off_the_faces leaves them.
@@ -219,9 +219,9 @@ struct MoveGroup {
       advance_plastic_lanes(lanes, material, entry, sigma, L);
     } else {
       // Lane by lane: such materials branch.
-      const LaneMask held = lanes.held(entry / P::width);
+      const LaneMask with_particle = lanes.with_particle(entry / P::width);
       for (int l = 0; l < P::width; ++l) {
-        if (!(held >> l & 1)) continue;  // the strain of a ghost has no bound
+        if (!(with_particle >> l & 1)) continue;  // the strain of a ghost has no bound
         Vector<remembered, Real> state;
         SymmetricTensor<Dim, Real> s;
         Matrix<Dim, Real> L_l;
@@ -239,16 +239,16 @@ struct MoveGroup {
   /// Copies the particles of a slot that left their cell to the layer's list, and moves those on a face off
   /// it. Ghosts move with the velocity field. Outside their cell their coordinates would grow without bound,
   /// so that those of the slot are reset.
-  [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void leave(const LaneGroup<Dim>& group, int layer,
-                                                             size_t entry) const {
+  [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void copy_migrating(const LaneGroup<Dim>& group, int layer,
+                                                                      size_t entry) const {
     const size_t slot = entry / P::width;
-    const LaneMask held = lanes.held(slot);
-    const int n = leavers.first(layer) + leavers.count(layer);
-    auto& head = leavers.head(n);
+    const LaneMask with_particle = lanes.with_particle(slot);
+    const int n = migrating.first(layer) + migrating.count(layer);
+    auto& head = migrating.head(n);
     auto xi = lanes.load_xi(entry);
-    LaneMask below[Dim], above[Dim], leaving = 0;
-    if (next_to_here(group, xi, held, below, above)) {
-      for (int i = 0; i < Dim; ++i) leaving |= below[i] | above[i];
+    LaneMask below[Dim], above[Dim], migrating_lanes = 0;
+    if (next_to_here(group, xi, with_particle, below, above)) {
+      for (int i = 0; i < Dim; ++i) migrating_lanes |= below[i] | above[i];
       for (int l = 0; l < P::width; ++l) {
         auto cell = lanes.cell(group, l);
         for (int i = 0; i < Dim; ++i)
@@ -258,92 +258,92 @@ struct MoveGroup {
       head.far = 0;
       head.to[0] = below[Dim - 1];
       head.to[2] = above[Dim - 1];
-      head.to[1] = leaving & ~head.to[0] & ~head.to[2];
+      head.to[1] = migrating_lanes & ~head.to[0] & ~head.to[2];
       if (Dim == 1) {
-        head.to[1] = leaving;
+        head.to[1] = migrating_lanes;
         head.to[0] = head.to[2] = 0;
       }
     } else {
-      leaving = leave_one_by_one(group, xi, held, head);
+      migrating_lanes = find_migrating_lanes(group, xi, with_particle, head);
     }
-    const LaneMask staying = held & ~leaving;
-    lanes.held(slot) = staying;
+    const LaneMask staying = with_particle & ~migrating_lanes;
+    lanes.with_particle(slot) = staying;
     const auto stays = P::Mask::from_bits(staying);
     static_for<Dim>([&](auto i) VSB_UNROLLED {
-      if (leaving != 0) xi[i].store(&leavers.data(n, (lanes.xi_column + i) * P::width));
+      if (migrating_lanes != 0) xi[i].store(&migrating.data(n, (lanes.xi_column + i) * P::width));
       lanes.store(lanes.xi_column + i, entry, math::select(stays, xi[i], P(Real(0.5))));
     });
     for (int c = Dim; c < lanes.columns(); ++c) {
       const P value = lanes.load(c, entry);
-      if (leaving != 0) value.store(&leavers.data(n, c * P::width));
+      if (migrating_lanes != 0) value.store(&migrating.data(n, c * P::width));
       lanes.store(c, entry, math::select(stays, value, P(Real(0))));
     }
-    if (leaving == 0) return;
+    if (migrating_lanes == 0) return;
     head.x = group.x;
     head.row = group.row;
-    for (int t = 0; t < 3; ++t) head.homeless[t] = 0;
+    for (int t = 0; t < 3; ++t) head.overflow[t] = 0;
     for (int l = 0; l < P::width; ++l) {
-      if (!(leaving >> l & 1)) continue;
+      if (!(migrating_lanes >> l & 1)) continue;
       const size_t e = entry + static_cast<size_t>(l);
       head.id[l] = lanes.id(e);
       lanes.id(e) = -1;
-      ++leavers.lost(layer);
+      ++migrating.lost(layer);
     }
-    ++leavers.count(layer);
+    ++migrating.count(layer);
   }
   /// The common case: all particles of a slot are in their cell or a neighbour of it, and away from the faces
   /// of the grid. Finds which lanes went below and above along every axis; xi becomes that in the new cell.
   KOKKOS_FORCEINLINE_FUNCTION bool next_to_here(const LaneGroup<Dim>& group, Vector<Dim, P>& xi,
-                                                LaneMask held, LaneMask (&below)[Dim],
+                                                LaneMask with_particle, LaneMask (&below)[Dim],
                                                 LaneMask (&above)[Dim]) const {
     const auto first = lanes.cell(group, 0);
     bool inner = first[0] > 0 && first[0] + P::width < grid.cells[0];
     for (int i = 1; i < Dim; ++i) inner = inner && first[i] > 0 && first[i] + 1 < grid.cells[i];
     if (!inner) return false;
     Vector<Dim, P> there;
-    LaneMask inside = held;
+    LaneMask inside = with_particle;
     static_for<Dim>([&](auto i) VSB_UNROLLED {
       const auto lower = xi[i] < P(Real(0)), upper = xi[i] >= P(Real(1));
       there[i] =
           xi[i] + math::select(lower, P(Real(1)), P(Real(0))) - math::select(upper, P(Real(1)), P(Real(0)));
       const P lowest(math::epsilon<Real>);
       there[i] = math::select(there[i] >= lowest, there[i], lowest);
-      below[i] = bits_of(lower) & held;
-      above[i] = bits_of(upper) & held;
+      below[i] = bits_of(lower) & with_particle;
+      above[i] = bits_of(upper) & with_particle;
       inside &= bits_of((xi[i] >= P(Real(-1))) & (there[i] < P(Real(1))));
     });
-    if (inside != held) return false;
+    if (inside != with_particle) return false;
     xi = there;
     return true;
   }
   /// Any case, lane by lane: finds the new cells of the particles that left theirs. Returns their lanes.
   [[gnu::noinline]] KOKKOS_FUNCTION LaneMask
-  leave_one_by_one(const LaneGroup<Dim>& group, Vector<Dim, P>& xi, LaneMask held,
-                   typename Leavers<Dim, Real, Device>::Head& head) const {
-    LaneMask leaving = 0;
+  find_migrating_lanes(const LaneGroup<Dim>& group, Vector<Dim, P>& xi, LaneMask with_particle,
+                       typename MigratingParticles<Dim, Real, Device>::Head& head) const {
+    LaneMask migrating_lanes = 0;
     head.far = head.to[0] = head.to[1] = head.to[2] = 0;
     for (int l = 0; l < P::width; ++l) {
-      if (!(held >> l & 1)) continue;
+      if (!(with_particle >> l & 1)) continue;
       const auto before = lanes.cell(group, l);
       auto cell = before;
       Vector<Dim, Real> here;
       for (int i = 0; i < Dim; ++i) here[i] = xi[i][l];
-      const bool leaves = to_next_cell(grid, cell, here, lanes.dual ? Real(0.5) : Real(0));
+      const bool leaves = to_next_cell(grid, cell, here, lanes.node_centred ? Real(0.5) : Real(0));
       for (int i = 0; i < Dim; ++i) xi[i].set(l, here[i]);
       if (!leaves) continue;
       const LaneMask lane = LaneMask(1) << l;
       const int layers = Dim == 1 ? 0 : cell[Dim - 1] - before[Dim - 1];
       (layers < -1 || layers > 1 ? head.far : head.to[layers + 1]) |= lane;
       head.cell[l] = cell;
-      leaving |= lane;
+      migrating_lanes |= lane;
     }
-    return leaving;
+    return migrating_lanes;
   }
 };
 
 /// The number of particles that may leave the cells of a layer before its sums are computed anew.
 template <int Dim, class Real, class Device>
-KOKKOS_FUNCTION int few_leavers(const CellLanes<Dim, Real, Device>& lanes, int layer) {
+KOKKOS_FUNCTION int few_migrating(const CellLanes<Dim, Real, Device>& lanes, int layer) {
   int slots = 0;
   for (int g = lanes.layer_first(layer); g < lanes.layer_first(layer + 1); ++g)
     slots += lanes.groups(g).slots;
@@ -355,39 +355,40 @@ KOKKOS_FUNCTION int few_leavers(const CellLanes<Dim, Real, Device>& lanes, int l
 /// A after their arrival costs less, so that a layer with many of them ends its sweep A here.
 template <int Dim, class Real, class Device, class Move, class Sum>
 KOKKOS_FORCEINLINE_FUNCTION void move_layer(const CellLanes<Dim, Real, Device>& lanes,
-                                            const Leavers<Dim, Real, Device>& leavers, int layer,
+                                            const MigratingParticles<Dim, Real, Device>& migrating, int layer,
                                             bool and_sum, const Move& move, const Sum& sum) {
-  auto& lost = leavers.lost(layer);
-  leavers.count(layer) = lost = 0;
-  const int few = and_sum ? few_leavers(lanes, layer) : -1;
+  auto& lost = migrating.lost(layer);
+  migrating.count(layer) = lost = 0;
+  const int few = and_sum ? few_migrating(lanes, layer) : -1;
   for_each_group(lanes, layer, [&](const auto& group, int g) {
     const bool and_sum_group = lost <= few;
     move(group);
     if (and_sum_group) sum(group, g);
   });
-  leavers.many(layer) = lost > few;
+  migrating.many(layer) = lost > few;
 }
 
 /// Sweep C, and A of the next step.
-template <bool Cubic, class Field, class Material, class Volume, int Dim, class Real, class Device>
+template <bool EqualSpacing, class Field, class Material, class Volume, int Dim, class Real, class Device>
 struct MoveLanes {
   LoadedLanes<Dim, Real, Device> on;
-  MoveGroup<Cubic, Material, Volume, Dim, Real, Device> move;
+  MoveGroup<EqualSpacing, Material, Volume, Dim, Real, Device> move;
   Field virtual_stress;
   bool and_sum;  ///< whether A follows at once
 
   KOKKOS_FUNCTION void operator()(int layer) const {
     StepSums<Dim, Real, Device> sums(move.nodes);
     move_layer(
-        on.lanes, move.leavers, layer, and_sum, [&](const auto& group) { accelerate_and_move(group, layer); },
+        on.lanes, move.migrating, layer, and_sum,
+        [&](const auto& group) { accelerate_and_move(group, layer); },
         [&](const auto& group, int) {
           sums.begin(group);
-          sum_group_with<Cubic>(on, group, virtual_stress, sums);
+          sum_group_with<EqualSpacing>(on, group, virtual_stress, sums);
         });
     sums.end();
   }
   KOKKOS_FORCEINLINE_FUNCTION void accelerate_and_move(const LaneGroup<Dim>& group, int layer) const {
-    if (on.lanes.one_sweep()) accelerate_apart(group);
+    if (on.lanes.remaps_by_mass_matrix()) accelerate_apart(group);
     move(group, layer);
   }
   [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void accelerate_apart(const LaneGroup<Dim>& group) const {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// The equation of motion at the nodes of cell lanes, Eq. (9) (see kernels/particles/update_nodes.hpp), a
-/// chunk each call:
+/// node group each call:
 ///   first   v_I = p_I / m_I,  f_I <- damped(f_I + m_I g),  a_I = f_I / m_I;  stores dt a_I, and
 ///           dt (v_I + dt a_I) in cells;
 ///   second  v*_I = p*_I / m_I, with the momentum p*_I of the re-map;  stores dt v*_I in cells.
-/// Components prescribed at a node are zero. Chunks without mass are skipped; a moving body has some ahead of
-/// it. The sums are set to zero, so that the next sweep can add to them.
+/// Components prescribed at a node are zero. Node groups without mass are skipped; a moving body has some
+/// ahead of it. The sums are set to zero, so that the next sweep can add to them.
 #pragma once
 
 #include <vsb/physics/explicit_dynamics.hpp>
@@ -16,7 +16,7 @@ namespace vsb {
 
 namespace kernel {
 
-/// Planes: node planes to which a layer of cells adds, 3 with dual cells.
+/// Planes: node planes to which a layer of cells adds, 3 with node-centred cells.
 template <int Dim, class Real, class Device, int Planes = 2>
 struct LaneNodeRows {
   using Nodes = LaneNodes<Dim, Real, Device>;
@@ -30,7 +30,7 @@ struct LaneNodeRows {
     const P both = lower + nodes.load(nodes.upper_sums + column, node);
     return Planes == 2 ? both : both + nodes.load(nodes.middle_sums + column, node);
   }
-  /// Sets sums to zero; for sums of dual cells the sweeps do so themselves.
+  /// Sets sums to zero; for sums of node-centred cells the sweeps do so themselves.
   KOKKOS_FORCEINLINE_FUNCTION void clear(int column, int node) const {
     if (Planes == 3) return;
     P(Real(0)).store(nodes.at(nodes.lower_sums + column, node));
@@ -43,8 +43,8 @@ struct LaneNodeRows {
     return s;
   }
   /// Zero where component i is prescribed.
-  KOKKOS_FORCEINLINE_FUNCTION P free_component(P value, int chunk, int i) const {
-    const auto fixed = nodes.fixed(chunk, i);
+  KOKKOS_FORCEINLINE_FUNCTION P free_component(P value, int node_group, int i) const {
+    const auto fixed = nodes.fixed(node_group, i);
     return fixed == 0 ? value : keep_lanes(~fixed, value);
   }
 };
@@ -59,8 +59,8 @@ struct UpdateLaneNodes : LaneNodeRows<Dim, Real, Device, Planes> {
   Real damping, dt;
   bool keep_momentum;  ///< whether the re-map adds to it
 
-  KOKKOS_FUNCTION void operator()(int chunk) const {
-    const int node = chunk * P::width;
+  KOKKOS_FUNCTION void operator()(int node_group) const {
+    const int node = node_group * P::width;
     const P m = this->take_sum(0, node);
     const auto massive = has_mass(m);
     if (!any(massive)) return leave_empty(node);
@@ -72,8 +72,8 @@ struct UpdateLaneNodes : LaneNodeRows<Dim, Real, Device, Planes> {
       const P f = this->take_sum(1 + Dim + i, node) + m * P(gravity[i]);
       const P dv = cundall_damped(f, v, P(damping)) * inverse_mass * P(dt);
       const P dx = (v + dv) * P(dt * inverse_spacing[i]);
-      this->free_component(dv, chunk, i).store(nodes.at(nodes.increment_column + i, node));
-      this->free_component(dx, chunk, i).store(nodes.at(nodes.displacement_column + i, node));
+      this->free_component(dv, node_group, i).store(nodes.at(nodes.increment_column + i, node));
+      this->free_component(dx, node_group, i).store(nodes.at(nodes.displacement_column + i, node));
     });
   }
   /// Nodes without mass: clears their sums, since particles on the face of their cell can give such a node a
@@ -92,12 +92,12 @@ struct RemapLaneNodes : LaneNodeRows<Dim, Real, Device, Planes> {
   using typename Base::P;
   Real factor;  ///< dt / h_0
 
-  KOKKOS_FUNCTION void operator()(int chunk) const {
-    const int node = chunk * P::width;
+  KOKKOS_FUNCTION void operator()(int node_group) const {
+    const int node = node_group * P::width;
     const P scale = nodes.load(nodes.inverse_mass_column, node) * P(factor);
     static_for<Dim>([&](auto i) VSB_UNROLLED {
       const P p = this->take_sum(1 + i, node);
-      this->free_component(p * scale, chunk, i).store(nodes.at(nodes.remapped_column + i, node));
+      this->free_component(p * scale, node_group, i).store(nodes.at(nodes.remapped_column + i, node));
     });
   }
 };

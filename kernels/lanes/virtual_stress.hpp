@@ -186,10 +186,10 @@ KOKKOS_FORCEINLINE_FUNCTION void function_traction(const LoadedLanes<Dim, Real, 
     const auto q = monomials<Dim>(xi);
     const P V = lanes.load(lanes.volume_column, entry);
     VirtualStressValue<Dim, P> bar;
-    const LaneMask held = lanes.held(entry / P::width);
+    const LaneMask with_particle = lanes.with_particle(entry / P::width);
     for (int l = 0; l < P::width; ++l) {
       auto at = VirtualStressValue<Dim, Real>::zero();
-      if (held >> l & 1) {  // a field need not be finite at the position of a ghost
+      if (with_particle >> l & 1) {  // a field need not be finite at the position of a ghost
         Vector<Dim, Real> xi_l;
         for (int i = 0; i < Dim; ++i) xi_l[i] = xi[i][l];
         at = field.at(on.grid.map(lanes.cell(group, l), xi_l).x, tractions);
@@ -218,7 +218,7 @@ KOKKOS_FORCEINLINE_FUNCTION std::uint64_t loaded_cells(const LaneGroup<Dim>& gro
 }
 
 /// All sums of a group in which all nodes of a cell are loaded or none is, by a uniform field.
-template <bool Cubic, class Field, int Dim, class Real, class Device>
+template <bool EqualSpacing, class Field, int Dim, class Real, class Device>
 [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void sum_whole_group(const LoadedLanes<Dim, Real, Device>& on,
                                                                      const LaneGroup<Dim>& group,
                                                                      const Field& field,
@@ -232,7 +232,7 @@ template <bool Cubic, class Field, int Dim, class Real, class Device>
   const std::uint64_t cells = loaded_cells(group);
   static_for<in_lane.size>([&](auto c) VSB_UNROLLED { in_lane[c] = keep_lanes(cells, P(bar[c])); });
   CellPolynomial<Dim, P> f[Dim];
-  force<Cubic>(
+  force<EqualSpacing>(
       lanes, group, on.grid.inverse_spacing, [&](size_t entry) { return lanes.load_stress(entry) - in_lane; },
       f);
   static_for<Dim>([&](auto i) VSB_UNROLLED { sums.add_moments(1 + Dim + i, group, f[i]); });
@@ -240,7 +240,7 @@ template <bool Cubic, class Field, int Dim, class Real, class Device>
 
 /// All sums of such a group, by fields that vary along direction j alone and have no shear. sigma - sbar
 /// replaces sigma, and fbar_j adds sum_p V_p fbar_j N_a.
-template <int j, bool Cubic, class Field, int Dim, class Real, class Device>
+template <int j, bool EqualSpacing, class Field, int Dim, class Real, class Device>
 [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void sum_whole_group_along(
     const LoadedLanes<Dim, Real, Device>& on, const LaneGroup<Dim>& group, const Field& field,
     StepSums<Dim, Real, Device>& sums) {
@@ -257,7 +257,7 @@ template <int j, bool Cubic, class Field, int Dim, class Real, class Device>
     if constexpr (a == j) divergence = keep_lanes(cells, P(slope));
   });
   CellPolynomial<Dim, P> f[Dim], volume;
-  force<Cubic>(
+  force<EqualSpacing>(
       lanes, group, on.grid.inverse_spacing,
       [&](size_t entry) VSB_UNROLLED {
         auto sigma = lanes.load_stress(entry);
@@ -272,7 +272,7 @@ template <int j, bool Cubic, class Field, int Dim, class Real, class Device>
 }
 
 /// All sums of a group with nodes loaded in any way, by any field.
-template <bool Cubic, class Field, int Dim, class Real, class Device>
+template <bool EqualSpacing, class Field, int Dim, class Real, class Device>
 [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void sum_partly_loaded_group(
     const LoadedLanes<Dim, Real, Device>& on, const LaneGroup<Dim>& group, const Field& field,
     StepSums<Dim, Real, Device>& sums) {
@@ -281,7 +281,7 @@ template <bool Cubic, class Field, int Dim, class Real, class Device>
   const auto& lanes = on.lanes;
   add_mass_and_momentum(lanes, group, sums);
   CellPolynomial<Dim, P> f[Dim];
-  force<Cubic>(
+  force<EqualSpacing>(
       lanes, group, on.grid.inverse_spacing, [&](size_t entry) { return lanes.load_stress(entry); }, f);
   static_for<Dim>([&](auto i) VSB_UNROLLED { nodes_from_moments<Dim>(f[i]); });
   if constexpr (Field::uniform) {
@@ -304,29 +304,29 @@ template <bool Cubic, class Field, int Dim, class Real, class Device>
 }
 
 /// All sums of a group: mass, momentum, and force with the virtual stress.
-template <bool Cubic, class Field, int Dim, class Real, class Device>
+template <bool EqualSpacing, class Field, int Dim, class Real, class Device>
 KOKKOS_FORCEINLINE_FUNCTION void sum_group_with(const LoadedLanes<Dim, Real, Device>& on,
                                                 const LaneGroup<Dim>& group, const Field& field,
                                                 StepSums<Dim, Real, Device>& sums) {
   if constexpr (Field::loaded) {
     if (Field::uniform && group.load == GroupLoad::whole) {
-      sum_whole_group<Cubic>(on, group, field, sums);
+      sum_whole_group<EqualSpacing>(on, group, field, sums);
       return;
     }
     if constexpr (Field::affine) {
       if (field.axis >= 0 && group.load == GroupLoad::whole) {
         static_for<Dim>([&](auto j) {
-          if (field.axis == j) sum_whole_group_along<j, Cubic>(on, group, field, sums);
+          if (field.axis == j) sum_whole_group_along<j, EqualSpacing>(on, group, field, sums);
         });
         return;
       }
     }
     if (group.load != GroupLoad::none) {
-      sum_partly_loaded_group<Cubic>(on, group, field, sums);
+      sum_partly_loaded_group<EqualSpacing>(on, group, field, sums);
       return;
     }
   }
-  sum_group<Cubic>(on.lanes, group, on.grid.inverse_spacing, sums);
+  sum_group<EqualSpacing>(on.lanes, group, on.grid.inverse_spacing, sums);
 }
 
 }  // namespace vsb

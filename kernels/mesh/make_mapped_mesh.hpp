@@ -146,9 +146,9 @@ std::vector<int> start_cells(const Grid& grid) {
   }
   const auto walk = [&](int raster_cell, int from) { return grid.walk(centre_of(raster_cell), from); };
   for (const int r : known)
-    if (const auto place = walk(r, entry(r)); place.found) entry(r) = grid.cell_index(place.cell);
+    if (const auto location = walk(r, entry(r)); location.found) entry(r) = grid.cell_index(location.cell);
   spread([&](int r, int from) {
-    if (const auto place = walk(r, from); place.found) assign(r, grid.cell_index(place.cell));
+    if (const auto location = walk(r, from); location.found) assign(r, grid.cell_index(location.cell));
   });
   spread(assign);
   return start;
@@ -164,12 +164,12 @@ MappedMesh<Dim, Real, Device> make_mapped_mesh(const Vector<Dim, int>& cells, co
   grid.cells = cells;
   for (int i = 0; i < Dim; ++i)
     if (cells[i] < 1) throw std::invalid_argument("vsb::make_mapped_mesh: at least one cell per direction");
-  std::vector<Real> places;
+  std::vector<Real> positions;
   for (int node = 0; node < grid.node_count(); ++node) {
     const auto x = position(grid.node_ijk(node));
-    for (int i = 0; i < Dim; ++i) places.push_back(static_cast<Real>(x[i]));
+    for (int i = 0; i < Dim; ++i) positions.push_back(static_cast<Real>(x[i]));
   }
-  grid.position = places.data();
+  grid.position = positions.data();
   mapped::check_cells(grid);
   grid.rectilinear = mapped::is_rectilinear(grid);
   mapped::fit_raster(grid);
@@ -181,7 +181,7 @@ MappedMesh<Dim, Real, Device> make_mapped_mesh(const Vector<Dim, int>& cells, co
   memory.position = decltype(memory.position)("vsb::mapped_node_position", nodes, Dim);
   memory.start_cell = decltype(memory.start_cell)("vsb::mapped_start_cell", start.size());
   Kokkos::deep_copy(memory.position, Kokkos::View<const Real**, Kokkos::LayoutRight, Kokkos::HostSpace, Host>(
-                                         places.data(), nodes, Dim));
+                                         positions.data(), nodes, Dim));
   Kokkos::deep_copy(memory.start_cell,
                     Kokkos::View<const int*, Kokkos::HostSpace, Host>(start.data(), start.size()));
   grid.position = memory.position.data();

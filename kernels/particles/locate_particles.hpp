@@ -88,7 +88,7 @@ struct ScanOccupied {
 };
 
 template <class Device>
-struct PlaceInBin {
+struct OrderByBin {
   ParticleBins<Device> bins;
   KOKKOS_FUNCTION void operator()(int p) const {
     bins.order(Kokkos::atomic_fetch_add(&bins.cursor(bins.bin(p)), 1)) = p;
@@ -118,7 +118,7 @@ namespace detail {
 template <class Exec, class Look, class Basis, class Device>
 Whereabouts whereabouts(const Exec& exec, const Look& look, int work, int n, const ParticleBins<Device>& bins,
                         const Basis& basis) {
-  require_reach<Exec, Device>();
+  require_accessible<Exec, Device>();
   check_rows("ParticleBins", bins.bin.extent(0), n,
              "after adding or removing particles (or points) call make_state, or allocate_bins, again");
   check_rows("ParticleBins::slot", bins.slot.extent(0), basis.bin_count(),
@@ -162,7 +162,7 @@ void sort_by_bin(const Exec& exec, ParticleBins<Device>& bins) {
   Kokkos::deep_copy(exec, bins.cursor, 0);
   Kokkos::parallel_for("vsb::count_in_bin", over_particles, kernel::CountInBin<Device>{bins});
   Kokkos::parallel_scan("vsb::scan_offsets", over_bins, kernel::ScanOffsets<Device>{bins});
-  Kokkos::parallel_for("vsb::place_in_bin", over_particles, kernel::PlaceInBin<Device>{bins});
+  Kokkos::parallel_for("vsb::order_by_bin", over_particles, kernel::OrderByBin<Device>{bins});
   int occupied = 0;
   Kokkos::parallel_scan("vsb::scan_occupied", over_bins, kernel::ScanOccupied<Device>{bins}, occupied);
   exec.fence();

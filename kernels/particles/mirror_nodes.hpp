@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
 /// Ghost nodes beyond a wall as mirror images of nodes inside (see physics/walls.hpp). With the sign s of a
-/// component, -1 where it is held at the wall, +1 otherwise and for masses, and the image I' of ghost node I,
+/// component, -1 where it is prescribed at the wall, +1 otherwise and for masses, and the image I' of ghost
+/// node I,
 ///   after a sum over particles:      f_I' <- f_I' + s f_I,   f_I <- 0;
 ///   after a velocity is known:       v_I <- s v_I'.
 /// The first is the transpose of the second, so that momentum and energy are those of a body with its
@@ -83,7 +84,7 @@ struct MirrorMasks {
 /// Launches make(line) over the lines of each direction that ends at a wall.
 template <class Exec, class Basis, class Make>
 void for_each_mirror_line(const Exec& exec, const std::string& label, const Basis& basis, const Make& make) {
-  if constexpr (Basis::reach > 0)
+  if constexpr (Basis::ghost_layers > 0)
     for (int axis = 0; axis < Basis::dimension; ++axis) {
       if (!basis.mirrored(axis, 0) && !basis.mirrored(axis, 1)) continue;
       const MirrorLine<Basis> line{basis, axis};

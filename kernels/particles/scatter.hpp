@@ -113,7 +113,7 @@ void scatter(const Exec& exec, const std::string& label, Scatter strategy, int p
              const typename ScatterWorkspace<Real, Device>::Target& target) {
   namespace ke = Kokkos::Experimental;
   constexpr int columns = Contribution::columns;
-  require_reach<Exec, Device>();
+  require_accessible<Exec, Device>();
   detail::check_rows("the target of a sum over particles", target.extent(0), basis.node_count(),
                      "allocate it with the basis of the sum");
   if (strategy == Scatter::gathered) {

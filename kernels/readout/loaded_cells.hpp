@@ -29,7 +29,7 @@ struct CountLoadedCells {
   TractionMask traction;
 
   KOKKOS_FUNCTION void operator()(int r, Vector<2, double>& sum) const {
-    const auto at = tiling.cell_row_place(r);
+    const auto at = tiling.cell_row_indices(r);
     for (int w = 0; w < tiling.words; ++w) {
       const std::uint64_t cells = bits.boundary(r, w) & bits.occupied(r, w) & tiling.existing(at, w, 0);
       for (int b = 0; b < 64 && cells >> b != 0; ++b)

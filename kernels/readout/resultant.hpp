@@ -47,11 +47,11 @@ using ResultantSums = Vector<Dim + 3, double>;
 
 /// Adds a force f at x.
 template <int Dim, class Real>
-KOKKOS_FUNCTION void add_force(const Vector<Dim, Real>& place, const Vector<Dim, Real>& f,
+KOKKOS_FUNCTION void add_force(const Vector<Dim, Real>& position, const Vector<Dim, Real>& f,
                                ResultantSums<Dim>& sum) {
   auto x = Vector<3, double>::zero(), force = x;
   for (int i = 0; i < Dim; ++i) {
-    x[i] = static_cast<double>(place[i]);
+    x[i] = static_cast<double>(position[i]);
     force[i] = static_cast<double>(f[i]);
     sum[i] += force[i];
   }
@@ -61,11 +61,11 @@ KOKKOS_FUNCTION void add_force(const Vector<Dim, Real>& place, const Vector<Dim,
   }
 }
 
-/// Adds the forces of the tractions in `among` at the nodes of a particle. place(a): the position of support
-/// node a.
-template <class Shape, class Field, class Boundary, class Place, int Dim, class Real>
+/// Adds the forces of the tractions in `among` at the nodes of a particle. position(a): the position of
+/// support node a.
+template <class Shape, class Field, class Boundary, class Position, int Dim, class Real>
 KOKKOS_FUNCTION void add_traction(const Shape& shape, const Vector<Dim, Real>& x, Real V, const Field& field,
-                                  TractionMask among, const Boundary& boundary, const Place& place,
+                                  TractionMask among, const Boundary& boundary, const Position& position,
                                   ResultantSums<Dim>& sum) {
   TractionMask any = 0;
   for (int a = 0; a < Shape::support; ++a) any |= boundary(shape.node[a]);
@@ -78,7 +78,7 @@ KOKKOS_FUNCTION void add_traction(const Shape& shape, const Vector<Dim, Real>& x
     if (here == 0) continue;
     if (here != chi) bar = field.at(x, here);
     chi = here;
-    add_force(place(a), V * (bar.stress * shape.dN[a] + shape.N[a] * bar.divergence), sum);
+    add_force(position(a), V * (bar.stress * shape.dN[a] + shape.N[a] * bar.divergence), sum);
   }
 }
 
@@ -89,20 +89,20 @@ struct CoveredFace {
   Vector<Dim, Real> area;  ///< times the normal out of the grid, m^(Dim - 1)
 };
 
-/// Removes the part of such a piece from the sum. held(a): the components that the face prescribes at support
-/// node a of `shape`, the basis functions at piece.x.
-template <class Shape, class Field, class Boundary, class Held, class Place, int Dim, class Real>
+/// Removes the part of such a piece from the sum. fixed(a): the components that the face prescribes at
+/// support node a of `shape`, the basis functions at piece.x.
+template <class Shape, class Field, class Boundary, class Fixed, class Position, int Dim, class Real>
 KOKKOS_FUNCTION void take_out_support(const Shape& shape, const CoveredFace<Dim, Real>& piece,
                                       const Field& field, TractionMask acting, const Boundary& boundary,
-                                      const Held& held, const Place& place, ResultantSums<Dim>& sum) {
+                                      const Fixed& fixed, const Position& position, ResultantSums<Dim>& sum) {
   for (int a = 0; a < Shape::support; ++a) {
     const TractionMask chi = boundary(shape.node[a]) & acting;
-    const ComponentMask components = held(a);
+    const ComponentMask components = fixed(a);
     if (chi == 0 || components == 0) continue;
     auto force = -shape.N[a] * (field.at(piece.x, chi).stress * piece.area);
     for (int i = 0; i < Dim; ++i)
       if ((components >> i & 1) == 0) force[i] = Real(0);
-    add_force(place(a), force, sum);
+    add_force(position(a), force, sum);
   }
 }
 
@@ -126,12 +126,13 @@ KOKKOS_FUNCTION Real covered_area(Real V, Real d, Real cover) {
 }
 
 /// Finds the piece that a particle covers of the face of the scene's grid at the end `side` of an axis.
-/// `grid` has `reach` layers of ghost cells outside that face. Returns false where the particle does not
-/// stand on it.
+/// `grid` has `ghost_layers` layers of ghost cells outside that face. Returns false where the particle does
+/// not stand on it.
 template <int Dim, class Real>
-KOKKOS_FUNCTION bool find_covered(const UniformGrid<Dim, Real>& grid, int reach, const Vector<Dim, Real>& x,
-                                  Real V, Real cover, int axis, int side, CoveredFace<Dim, Real>& piece) {
-  const int node = side == 0 ? reach : grid.cells[axis] - reach;
+KOKKOS_FUNCTION bool find_covered(const UniformGrid<Dim, Real>& grid, int ghost_layers,
+                                  const Vector<Dim, Real>& x, Real V, Real cover, int axis, int side,
+                                  CoveredFace<Dim, Real>& piece) {
+  const int node = side == 0 ? ghost_layers : grid.cells[axis] - ghost_layers;
   const Real face = grid.lower[axis] + static_cast<Real>(node) * grid.spacing[axis];
   const Real area = covered_area<Dim>(V, side == 0 ? x[axis] - face : face - x[axis], cover);
   if (!(area > Real(0))) return false;
@@ -158,13 +159,13 @@ KOKKOS_FUNCTION Vector<Dim, Real> face_normal(const Matrix<Dim, Real>& J, int ax
 template <int Dim, class Real>
 KOKKOS_FUNCTION bool find_covered(const MappedGrid<Dim, Real>& grid, int, const Vector<Dim, Real>& x, Real V,
                                   Real cover, int axis, int side, CoveredFace<Dim, Real>& piece) {
-  auto place = grid.locate(x);
-  if (place.cell[axis] != (side == 0 ? 0 : grid.cells[axis] - 1)) return false;
-  const Real away = side == 0 ? place.xi[axis] : Real(1) - place.xi[axis];
+  auto location = grid.locate(x);
+  if (location.cell[axis] != (side == 0 ? 0 : grid.cells[axis] - 1)) return false;
+  const Real away = side == 0 ? location.xi[axis] : Real(1) - location.xi[axis];
   if (!(away > Real(0))) return false;
-  place.xi[axis] = static_cast<Real>(side);
-  const auto cell = grid.cell(place.cell);
-  const auto at = cell.at(place.xi);
+  location.xi[axis] = static_cast<Real>(side);
+  const auto cell = grid.cell(location.cell);
+  const auto at = cell.at(location.xi);
   const auto n = face_normal(at.J, axis, side);
   const Real d = dot(at.x - x, n);
   Real area = 0;
@@ -183,11 +184,11 @@ KOKKOS_FUNCTION bool find_covered(const MappedGrid<Dim, Real>& grid, int, const 
 
 /// The components that a face of the grid prescribes at a node.
 template <class Basis, int Dim, class Real, class Device>
-struct HeldAtFace {
+struct FixedAtFace {
   Basis basis;
   Nodes<Dim, Real, Device> nodes;
   KOKKOS_FUNCTION ComponentMask operator()(int node, int axis, int side) const {
-    if constexpr (Basis::reach > 0)
+    if constexpr (Basis::ghost_layers > 0)
       return basis.walls.fixed[axis][side];
     else
       return nodes.fixed_components(node);
@@ -199,7 +200,7 @@ template <class Basis, class Field, int Dim, class Real, class Device>
 struct ParticleResultant {
   Particles<Dim, Real, Device> particles;
   Basis basis;
-  HeldAtFace<Basis, Dim, Real, Device> held;
+  FixedAtFace<Basis, Dim, Real, Device> fixed;
   BoundaryNodes<Device> boundary;
   Field virtual_stress;
   TractionMask among;
@@ -215,12 +216,13 @@ struct ParticleResultant {
     for (int axis = 0; axis < Dim; ++axis)
       for (int side = 0; side < 2; ++side) {
         CoveredFace<Dim, Real> piece;
-        if (!find_covered(basis.grid, Basis::reach, x, V, cover_of<Real>(cover, p, axis), axis, side, piece))
+        if (!find_covered(basis.grid, Basis::ghost_layers, x, V, cover_of<Real>(cover, p, axis), axis, side,
+                          piece))
           continue;
         const auto there = basis.shape(piece.x);
         take_out_support(
             there, piece, virtual_stress, virtual_stress.acting_at(x) & among, boundary,
-            [&](int a) { return held(there.node[a], axis, side); },
+            [&](int a) { return fixed(there.node[a], axis, side); },
             [&](int a) { return basis.grid.node_position(there.node[a]); }, sum);
       }
   }
@@ -243,7 +245,7 @@ struct NodeForce {
 template <class Basis, class Field, int Dim, class Real, class Device>
 struct WholeCellsAtFaces {
   Basis basis;
-  HeldAtFace<Basis, Dim, Real, Device> held;
+  FixedAtFace<Basis, Dim, Real, Device> fixed;
   BoundaryNodes<Device> boundary;
   Field virtual_stress;
 
@@ -269,15 +271,15 @@ struct WholeCellsAtFaces {
       }
       // Nanson: the area of a face of the cell is det J J^-T times that of the unit cube.
       const auto J = jacobian(basis.grid, cell, xi);
-      const auto place = basis.grid.map(cell, xi);
+      const auto point = basis.grid.map(cell, xi);
       const auto inverse_J = inverse(J);
-      CoveredFace<Dim, Real> piece{place.x, {}};
+      CoveredFace<Dim, Real> piece{point.x, {}};
       for (int i = 0; i < Dim; ++i)
-        piece.area[i] = (side == 0 ? Real(1) : Real(-1)) * weight * place.volume_ratio * inverse_J(axis, i);
+        piece.area[i] = (side == 0 ? Real(1) : Real(-1)) * weight * point.volume_ratio * inverse_J(axis, i);
       const auto shape = basis.shape(piece.x);
       take_out_support(
           shape, piece, virtual_stress, virtual_stress.original, boundary,
-          [&](int a) { return held(shape.node[a], axis, side); },
+          [&](int a) { return fixed(shape.node[a], axis, side); },
           [&](int a) { return basis.grid.node_position(shape.node[a]); }, sum);
     }
   }
@@ -319,11 +321,11 @@ TractionResultant<Dim> resultant(const Exec& exec, const State<Dim, Real, Device
   const auto add = [&](const char* label, int count, const auto& term) {
     if (count > 0) total += ordered_sum<kernel::ResultantSums<Dim>::size, Device>(exec, label, count, term);
   };
-  const kernel::HeldAtFace<Basis, Dim, Real, Device> held{basis, s.nodes};
+  const kernel::FixedAtFace<Basis, Dim, Real, Device> fixed{basis, s.nodes};
   const auto& boundary = s.occupancy.boundary;
   if constexpr (Field::loaded)
     add("vsb::particle_resultant", s.particles.count(),
-        kernel::ParticleResultant<Basis, Field, Dim, Real, Device>{s.particles, basis, held, boundary,
+        kernel::ParticleResultant<Basis, Field, Dim, Real, Device>{s.particles, basis, fixed, boundary,
                                                                    virtual_stress, among, cover});
   if constexpr (Field::cell_quadrature) {
     auto field = virtual_stress;
@@ -335,7 +337,7 @@ TractionResultant<Dim> resultant(const Exec& exec, const State<Dim, Real, Device
     add("vsb::node_forces", cells.count(),
         kernel::NodeForce<decltype(basis.grid), Dim, Real, Device>{basis.grid, cells});
     add("vsb::whole_cells_at_faces", basis.grid.cell_count(),
-        kernel::WholeCellsAtFaces<Basis, Field, Dim, Real, Device>{basis, held, boundary, field});
+        kernel::WholeCellsAtFaces<Basis, Field, Dim, Real, Device>{basis, fixed, boundary, field});
   }
   if constexpr (!std::is_same_v<Field, NoVirtualStress>)
     add("vsb::surface_point_resultant", s.surface.count(),

@@ -46,15 +46,15 @@ struct InvertBlock {
     Real scale = 0;
     for (int i = 0; i < Dim; ++i) scale += block(I, i * Dim + i);
     const bool idle = !has_mass(nodes.mass(I)) || !(scale > 0);
-    const auto held = [&](int i) { return idle || (nodes.fixed_components(I) >> i & 1) != 0; };
+    const auto fixed = [&](int i) { return idle || (nodes.fixed_components(I) >> i & 1) != 0; };
     auto m = Matrix<Dim, Real>::identity();
     for (int i = 0; i < Dim; ++i)
       for (int j = 0; j < Dim; ++j)
-        if (!held(i) && !held(j)) m(i, j) = block(I, i * Dim + j) / scale;
+        if (!fixed(i) && !fixed(j)) m(i, j) = block(I, i * Dim + j) / scale;
     const auto inverse_block = inverse(m);
     for (int i = 0; i < Dim; ++i)
       for (int j = 0; j < Dim; ++j)
-        block(I, i * Dim + j) = held(i) || held(j) ? Real(0) : inverse_block(i, j) / scale;
+        block(I, i * Dim + j) = fixed(i) || fixed(j) ? Real(0) : inverse_block(i, j) / scale;
   }
 };
 

@@ -28,12 +28,12 @@ struct UnsupportedLoad {
 namespace kernel {
 
 template <class Grid, class Fields>
-struct PlaceNode {
+struct StoreNodePosition {
   Grid grid;
-  Fields place;
+  Fields positions;
   KOKKOS_FUNCTION void operator()(int I) const {
     const auto x = grid.node_position(I);
-    for (int i = 0; i < Grid::dimension; ++i) place(I, i) = x[i];
+    for (int i = 0; i < Grid::dimension; ++i) positions(I, i) = x[i];
   }
 };
 
@@ -114,19 +114,20 @@ UnsupportedLoad<Dim> find_unsupported_load(const Exec& exec, const Nodes<Dim, Re
   using Fields = typename Nodes<Dim, Real, Device>::Fields;
   using Motions = kernel::RigidMotions<Dim>;
   const int count = nodes.count();
-  const Fields place_on_device("vsb::node_places", static_cast<size_t>(count), Dim);
-  Kokkos::parallel_for("vsb::place_node", Kokkos::RangePolicy<Exec>(exec, 0, count),
-                       kernel::PlaceNode<decltype(basis.grid), Fields>{basis.grid, place_on_device});
+  const Fields positions_on_device("vsb::node_positions", static_cast<size_t>(count), Dim);
+  Kokkos::parallel_for(
+      "vsb::store_node_position", Kokkos::RangePolicy<Exec>(exec, 0, count),
+      kernel::StoreNodePosition<decltype(basis.grid), Fields>{basis.grid, positions_on_device});
   exec.fence();
   const auto on_host = [](const auto& view) {
     return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), view, "vsb::nodes on host");
   };
-  const auto place = on_host(place_on_device), sums = on_host(nodes.sums);
+  const auto positions = on_host(positions_on_device), sums = on_host(nodes.sums);
   const auto fixed = on_host(nodes.fixed_components);
   const auto occupied = on_host(bins.occupied);
   const auto x = [&](int I) {
     Vector<Dim, double> position;
-    for (int i = 0; i < Dim; ++i) position[i] = place(I, i);
+    for (int i = 0; i < Dim; ++i) position[i] = positions(I, i);
     return position;
   };
 

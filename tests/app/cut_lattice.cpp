@@ -130,17 +130,17 @@ TEST_CASE("boxes wholly in the body are the particles that they are without cutt
   const auto kept = place_one(2, disc, 0.5, 4, BoundaryBoxes::keep);
   for (const auto boundary : {BoundaryBoxes::cut, BoundaryBoxes::cut2x2}) {
     const auto cut = place_one(2, disc, 0.5, 4, boundary);
-    const std::set<Point> places(cut.position.begin(), cut.position.end());
+    const std::set<Point> positions(cut.position.begin(), cut.position.end());
     size_t whole = 0;
     for (const Point& x : kept.position) {
       // A disc is convex. With cut2x2 the neighbours' halves that touch the box must be whole too.
-      const double reach = boundary == BoundaryBoxes::cut ? 0.0625 : 0.125;
+      const double half = boundary == BoundaryBoxes::cut ? 0.0625 : 0.125;
       bool all_corners = true;
-      for (const double dx : {-reach, reach})
-        for (const double dy : {-reach, reach}) all_corners = all_corners && disc({x[0] + dx, x[1] + dy, 0});
+      for (const double dx : {-half, half})
+        for (const double dy : {-half, half}) all_corners = all_corners && disc({x[0] + dx, x[1] + dy, 0});
       if (!all_corners) continue;
       ++whole;
-      CHECK(places.count(x) == 1);
+      CHECK(positions.count(x) == 1);
     }
     CHECK(whole > (boundary == BoundaryBoxes::cut ? 700u : 600u));
     CHECK(static_cast<size_t>(std::count(cut.volume.begin(), cut.volume.end(), kept.volume[0])) >= whole);

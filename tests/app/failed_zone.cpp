@@ -31,7 +31,7 @@ struct Lattice {
 
 }  // namespace
 
-TEST_CASE("the reach of a plus-shaped zone differs on the axis and on the diagonal") {
+TEST_CASE("the depth of a plus-shaped zone differs on the axis and on the diagonal") {
   Lattice l;
   // In the first rows beside the axes up to place 7 (3.75 from the centre), on the diagonal up to 3 (2.47).
   l.add(0, 10, 0, [](int i, int j, double) {
@@ -43,11 +43,12 @@ TEST_CASE("the reach of a plus-shaped zone differs on the axis and on the diagon
   CHECK(zone.rows_diagonal == Approx((1.75 * std::sqrt(2.0) - 2) / 0.5));
   CHECK(zone.rows == zone.rows_axis);
   CHECK(zone.asymmetry == 0);
-  CHECK(zone.per_layer == 2 * 4 + 1);  // places 4 to 7 beside each axis lie outside of the hole, and (3, 3)
+  CHECK(zone.per_layer ==
+        2 * 4 + 1);  // positions 4 to 7 beside each axis lie outside of the hole, and (3, 3)
   CHECK(zone.layer_spread == 0);
 }
 
-TEST_CASE("the mean reach is that of a round zone, of what is gone too") {
+TEST_CASE("the mean depth is that of a round zone, of what is gone too") {
   Lattice l;
   l.add(-10, 10, 0, [](int, int, double r) {
     return r < 3 ? Fate::gone : r < 4 ? Fate::failed : Fate::present;

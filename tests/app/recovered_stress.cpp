@@ -230,7 +230,7 @@ TEST_CASE("norms of the column, by hand: particles count alike, means by volume"
   CHECK_THAT(errors[4].second, WithinRel(std::sqrt((4. * 4 + 4 * 1) / 8) / 10, 1e-14));
 }
 
-TEST_CASE("norms of the cylinder at cell means, by hand: the exact stress at the mean place") {
+TEST_CASE("norms of the cylinder at cell means, by hand: the exact stress at the mean position") {
   Scene scene = grid_scene(2, 0, 1, 3);
   vsb::test::add_body(scene, everywhere(), 1, BoundaryBoxes::keep);
   scene.compare = CylinderComparison{1, 2, 3};  // sigma_rr, sigma_tt = 1 -+ 4 / r^2
@@ -242,7 +242,8 @@ TEST_CASE("norms of the cylinder at cell means, by hand: the exact stress at the
   s.bodies = {{0, 3}};
   const auto errors = errors_of(scene, s);
   REQUIRE(errors.size() == 5);
-  // Mean place (1.5, 0.375), mean stress xx -1, yy 2.5, xy 0.25; cos^2 = 16/17, sin^2 = 1/17, sin cos = 4/17.
+  // Mean position (1.5, 0.375), mean stress xx -1, yy 2.5, xy 0.25; cos^2 = 16/17, sin^2 = 1/17, sin cos =
+  // 4/17.
   const double r2 = 1.5 * 1.5 + 0.375 * 0.375;
   const double rr = (-16 + 2.5 + 2 * 0.25 * 4) / 17, tt = (-1 + 16 * 2.5 - 2 * 0.25 * 4) / 17;
   CHECK(errors[3].first == "e_rr_cell_mean");

@@ -108,14 +108,14 @@ TEST_CASE("random combinations agree with counts of random points") {
   Random random(11);
   for (int n = 0; n < 20; ++n) {
     const int d = 2 + n % 2;
-    const auto place = [&] {
+    const auto point = [&] {
       return Point{random(-1.5, 1.5), random(-1.5, 1.5), d == 3 ? random(-1.5, 1.5) : 0};
     };
-    const Point corner = place();
-    const Region disc = ball(place(), random(0.5, 1.5)), half = half_space(place(), {1, random(-1, 1), 0}),
+    const Point corner = point();
+    const Region disc = ball(point(), random(0.5, 1.5)), half = half_space(point(), {1, random(-1, 1), 0}),
                  block =
                      box(d, corner, {corner[0] + random(0.5, 2), corner[1] + random(0.5, 2), corner[2] + 1});
-    const Region region = difference_of({union_of({disc, block}), intersection_of({half, ball(place(), 1)})});
+    const Region region = difference_of({union_of({disc, block}), intersection_of({half, ball(point(), 1)})});
     const int points = 40000;
     int inside = 0;
     for (int p = 0; p < points; ++p) {

@@ -22,7 +22,7 @@ with tempfile.TemporaryDirectory() as folder:
 warnings = [line.removeprefix(f"{root.resolve()}/") for line in done.stderr.splitlines() if line.strip()]
 for line in warnings:
     print(line)
-headers = sum(1 for room in ("kernels", "physics", "views") for _ in (root / room).rglob("*.hpp"))
+headers = sum(1 for directory in ("kernels", "physics", "views") for _ in (root / directory).rglob("*.hpp"))
 print(f"docs: {len(warnings)} lines of warnings; {pages} of {headers} headers have a page"
       + ("" if pages == headers else ": the others lack a comment that begins with \\file"))
 sys.exit(1 if warnings or done.returncode != 0 or pages != headers else 0)

@@ -77,7 +77,7 @@ void run_everything(const Basis& basis, const UniformGrid<Dim, double>& grid, Sc
   allocate_material_state(block, 32, Dim * Dim);
   auto state = make_state(block.particles, basis);
   Kokkos::deep_copy(state.occupancy.tractions, 1u);
-  state.occupancy.conservative = 1;  // so that it acts where particles leave no boundary
+  state.occupancy.at_all_active_nodes = 1;  // so that it acts where particles leave no boundary
   set_fill_criterion(state.occupancy, 0.1);
   set_void_filter(state.occupancy, basis);
   const std::vector<Body<double>> bodies{{0, 32, LinearElastic<double>::from_young(1, 0.3)},
@@ -99,7 +99,7 @@ void run_everything(const Basis& basis, const UniformGrid<Dim, double>& grid, Sc
     for (int i = 0; i < Dim; ++i) x(0, i) = grid.lower[i] + 0.5 * grid.spacing[i];
   });
   edit(state.surface.carrier, [](const auto& carrier) { carrier(0) = carried_by_grid; });
-  if constexpr (Basis::reach == 0) {
+  if constexpr (Basis::ghost_layers == 0) {
     using Original = OriginalVirtualStress<decltype(pressure), UniformGrid<Dim, double>, Device>;
     const Original original{pressure, grid, state.occupancy.cells, 1u, 2};
     REQUIRE(step(Exec(), state, bodies, basis, original, options) == -1);

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""layers.py ROOT: the rooms include only what they may, and nothing names the package hosts of one machine.
+"""layers.py ROOT: the directories include only what they may, and nothing names the package hosts of one machine.
 
   views    the standard library, Kokkos, views, the compiler's intrinsics
   physics  the standard library, Kokkos_Complex, physics, and of views what describes a point (POINT_VIEWS)
-  kernels  the standard library, Kokkos, kernels, physics, views; among the rooms within, KERNELS
-  apps     what they like of these and of other libraries; of each other, the rooms before them in APPS
+  kernels  the standard library, Kokkos, kernels, physics, views; among the directories within, KERNELS
+  apps     what they like of these and of other libraries; of each other, the directories before them in APPS
 The programs' libraries (files, command line, formats) live in apps alone, so the above rules them out elsewhere.
 """
 import os
@@ -38,25 +38,25 @@ SKIPPED = {".git", "build", "results", "third_party", "__pycache__"}
 
 def include_violations(root):
     found, files = [], 0
-    for room, patterns in ALLOWED.items():
-        for path in sorted((root / room).rglob("*")):
+    for directory, patterns in ALLOWED.items():
+        for path in sorted((root / directory).rglob("*")):
             if not path.is_file() or path.suffix == ".png":
                 continue
             files += 1
             for what in INCLUDE.findall(path.read_text()):
                 name = re.match(r'<([^>]+)>', what)
                 if not name or not any(re.fullmatch(pattern, name.group(1)) for pattern in patterns):
-                    found.append(f"{path.relative_to(root)}: '#include {what.strip()}' is not for {room}")
+                    found.append(f"{path.relative_to(root)}: '#include {what.strip()}' is not for {directory}")
     for path in sorted((root / "kernels").glob("*/*.hpp")):
         own = path.parent.name
-        for room in re.findall(r"<vsb/kernels/(\w+)/", path.read_text()):
-            if room not in KERNELS.get(own, ()):
-                found.append(f"{path.relative_to(root)}: kernels/{own} includes nothing of kernels/{room}")
+        for directory in re.findall(r"<vsb/kernels/(\w+)/", path.read_text()):
+            if directory not in KERNELS.get(own, ()):
+                found.append(f"{path.relative_to(root)}: kernels/{own} includes nothing of kernels/{directory}")
     for path in sorted(path for own in APPS for path in (root / "apps" / own).glob("*.[hc]pp*")):
         own = path.parent.name
-        for room in re.findall(r'#include "(\w+)/', path.read_text()):
-            if room not in APPS[:APPS.index(own) + 1]:
-                found.append(f"{path.relative_to(root)}: apps/{own} includes nothing of apps/{room}")
+        for directory in re.findall(r'#include "(\w+)/', path.read_text()):
+            if directory not in APPS[:APPS.index(own) + 1]:
+                found.append(f"{path.relative_to(root)}: apps/{own} includes nothing of apps/{directory}")
     if files < 20:
         found.append(f"only {files} headers under {root}: is that the top of the tree?")
     return found
@@ -64,18 +64,18 @@ def include_violations(root):
 
 def without_kokkos(root):
     """Headers that use Kokkos and reach none of its headers: the precompiled one would hide that."""
-    includes, reaches = {}, {}
-    for path in (path for room in ALLOWED for path in (root / room).rglob("*.hpp")):
+    includes, known = {}, {}
+    for path in (path for directory in ALLOWED for path in (root / directory).rglob("*.hpp")):
         includes[f"vsb/{path.relative_to(root)}"] = set(re.findall(r"#include <([^>]+)>", path.read_text()))
 
-    def reach(name):
-        if name not in reaches:
-            reaches[name] = name.startswith("Kokkos_")
-            reaches[name] = reaches[name] or any([reach(other) for other in includes.get(name, ())])
-        return reaches[name]
+    def uses_kokkos(name):
+        if name not in known:
+            known[name] = name.startswith("Kokkos_")
+            known[name] = known[name] or any([uses_kokkos(other) for other in includes.get(name, ())])
+        return known[name]
 
     return [f"{name[4:]}: uses Kokkos and includes none of it" for name in sorted(includes)
-            if re.search(r"\bKokkos::|\bKOKKOS_", (root / name[4:]).read_text()) and not reach(name)]
+            if re.search(r"\bKokkos::|\bKOKKOS_", (root / name[4:]).read_text()) and not uses_kokkos(name)]
 
 
 def package_hosts():
@@ -89,12 +89,12 @@ def package_hosts():
 
 
 def unnamed_files(root):
-    """Headers of the kernels and of physics that the map of their room leaves out."""
+    """Headers of the kernels and of physics that the map of their directory leaves out."""
     found = []
-    for room in ("kernels", "physics"):
-        text = (root / room / "README.md").read_text()
-        found += [f"{path.relative_to(root)}: {room}/README.md has no line for it"
-                  for path in sorted((root / room).rglob("*.hpp"))
+    for directory in ("kernels", "physics"):
+        text = (root / directory / "README.md").read_text()
+        found += [f"{path.relative_to(root)}: {directory}/README.md has no line for it"
+                  for path in sorted((root / directory).rglob("*.hpp"))
                   if f"`{path.stem}`" not in text and f"`{path.name}`" not in text]
     return found
 

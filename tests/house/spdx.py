@@ -4,14 +4,14 @@
 import pathlib
 import sys
 
-ROOMS = ("views", "physics", "kernels", "apps", "bench", "tests", "third_party")
+DIRECTORIES = ("views", "physics", "kernels", "apps", "bench", "tests", "third_party")
 SUFFIXES = (".hpp", ".cpp", ".h", ".c", ".py", ".sh", ".cmake")
 LINE = "SPDX-License-Identifier: BSD-3-Clause"
 
 root = pathlib.Path(sys.argv[1])
 files = [root / "CMakeLists.txt"]
-for room in ROOMS:
-    files += [path for path in sorted((root / room).rglob("*")) if path.is_file()
+for directory in DIRECTORIES:
+    files += [path for path in sorted((root / directory).rglob("*")) if path.is_file()
               and (path.suffix in SUFFIXES or path.name == "CMakeLists.txt" or not path.suffix)
               and not {"__pycache__", "build"} & set(path.parts)]
 missing = [path for path in files if LINE not in "".join(path.read_text(errors="replace").splitlines(True)[:2])]

@@ -63,11 +63,11 @@ inline std::set<int> algorithm_1(const CellNodes& grid, const std::vector<bool>&
   return n1;
 }
 
-/// Particles at random places of the cells that are not void: one or two in each.
+/// Particles at random positions in the cells that are not void: one or two in each.
 template <int Dim, class Real>
 ParticleBlock<Dim, Real, Device> populate(const UniformGrid<Dim, Real>& grid,
                                           const std::vector<bool>& void_cell, Random& random) {
-  std::vector<Vector<Dim, Real>> places;
+  std::vector<Vector<Dim, Real>> positions;
   size_t number = 0;
   for_each_cell(grid, [&](const Vector<Dim, int>& cell) {
     if (void_cell[number++]) return;
@@ -75,14 +75,14 @@ ParticleBlock<Dim, Real, Device> populate(const UniformGrid<Dim, Real>& grid,
       Vector<Dim, Real> x;
       for (int i = 0; i < Dim; ++i)
         x[i] = grid.lower[i] + grid.spacing[i] * (static_cast<Real>(cell[i]) + random.draw<Real>(0.01, 0.99));
-      places.push_back(x);
+      positions.push_back(x);
     }
   });
-  random.shuffle(places);
-  const auto block = allocate_particles<Dim, Real, Device>(static_cast<int>(places.size()));
+  random.shuffle(positions);
+  const auto block = allocate_particles<Dim, Real, Device>(static_cast<int>(positions.size()));
   edit(block, [&](const auto& particles) {
     for (int p = 0; p < particles.count(); ++p) {
-      for (int i = 0; i < Dim; ++i) particles.position(p, i) = places[static_cast<size_t>(p)][i];
+      for (int i = 0; i < Dim; ++i) particles.position(p, i) = positions[static_cast<size_t>(p)][i];
       particles.mass(p) = particles.volume(p) = Real(1);
     }
   });

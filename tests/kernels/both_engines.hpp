@@ -14,12 +14,13 @@
 
 namespace vsb::test {
 
-/// Where cell lanes keep every node: its number in the grid, and the place. Fails where a grid node has two.
+/// Where cell lanes keep every node: its number in the grid, and in the lanes. Fails where a grid node has
+/// two.
 template <int Dim, class Real>
-std::map<int, int> places_of_nodes(const CellLanes<Dim, Real, Device>& lanes,
-                                   const CellNumbering<Dim>& grid) {
+std::map<int, int> lane_nodes_of_grid(const CellLanes<Dim, Real, Device>& lanes,
+                                      const CellNumbering<Dim>& grid) {
   const auto groups = read(lanes.groups);
-  std::map<int, int> places;
+  std::map<int, int> lane_nodes;
   int twice = 0;
   for (int g = 0; g < lanes.group_count; ++g)
     for (int l = 0; l < lanes.width; ++l) {
@@ -33,22 +34,22 @@ std::map<int, int> places_of_nodes(const CellLanes<Dim, Real, Device>& lanes,
           inside = inside && ijk[i] >= 0 && ijk[i] <= grid.cells[i];
         }
         if (!inside) continue;
-        const int place = group.node[a >> 1] + l + (a & 1);
-        twice += places.emplace(grid.node_index(ijk), place).first->second != place;
+        const int lane_node = group.node[a >> 1] + l + (a & 1);
+        twice += lane_nodes.emplace(grid.node_index(ijk), lane_node).first->second != lane_node;
       }
     }
   CHECK(twice == 0);
-  return places;
+  return lane_nodes;
 }
 
-/// The same of dual cell lanes; `grid` is the one with its ghost layer.
+/// The same of node-centred cell lanes; `grid` is the one with its ghost layer.
 template <int Dim, class Real>
-std::map<int, int> places_of_nodes(const SplineLaneState<Dim, Real, Device>& s,
-                                   const CellNumbering<Dim>& grid) {
+std::map<int, int> lane_nodes_of_grid(const SplineLaneState<Dim, Real, Device>& s,
+                                      const CellNumbering<Dim>& grid) {
   const auto& lanes = s.memory.lanes;
   const auto groups = read(lanes.groups);
   const auto stencils = read(lanes.stencils);
-  std::map<int, int> places;
+  std::map<int, int> lane_nodes;
   int twice = 0;
   for (int g = 0; g < lanes.group_count; ++g)
     for (int l = 0; l < lanes.width; ++l)
@@ -60,11 +61,11 @@ std::map<int, int> places_of_nodes(const SplineLaneState<Dim, Real, Device>& s,
           inside = inside && ijk[i] >= 0 && ijk[i] <= grid.cells[i];
         }
         if (!inside) continue;
-        const int place = stencils(g).node[a / 3] + l + a % 3;
-        twice += places.emplace(grid.node_index(ijk), place).first->second != place;
+        const int lane_node = stencils(g).node[a / 3] + l + a % 3;
+        twice += lane_nodes.emplace(grid.node_index(ijk), lane_node).first->second != lane_node;
       }
   CHECK(twice == 0);
-  return places;
+  return lane_nodes;
 }
 
 /// The tractions that act at the nodes of a grid according to cell lanes.
@@ -72,19 +73,19 @@ template <int Dim, class Real>
 std::vector<TractionMask> tractions_of_nodes(const LaneState<Dim, Real, Device>& s) {
   const auto tractions = read(s.boundary.tractions);
   std::vector<TractionMask> masks(static_cast<size_t>(s.memory.grid.node_count()), 0);
-  for (const auto& [node, place] : places_of_nodes<Dim, Real>(s.memory.lanes, s.memory.grid))
-    masks[static_cast<size_t>(node)] = tractions(place);
+  for (const auto& [node, lane_node] : lane_nodes_of_grid<Dim, Real>(s.memory.lanes, s.memory.grid))
+    masks[static_cast<size_t>(node)] = tractions(lane_node);
   return masks;
 }
 
-/// The same of dual cell lanes, for the grid with its ghost layer. Nodes that no particle reaches are not
-/// kept by the lanes, and may be active all the same; what they have is taken from `otherwise`.
+/// The same of node-centred cell lanes, for the grid with its ghost layer. Nodes that no particle reaches are
+/// not kept by the lanes, and may be active all the same; what they have is taken from `otherwise`.
 template <int Dim, class Real>
 std::vector<TractionMask> tractions_of_nodes(const SplineLaneState<Dim, Real, Device>& s,
                                              std::vector<TractionMask> otherwise) {
   const auto tractions = read(s.boundary.tractions);
-  for (const auto& [node, place] : places_of_nodes<Dim, Real>(s, with_ghost_layer(s.grid)))
-    otherwise[static_cast<size_t>(node)] = tractions(place);
+  for (const auto& [node, lane_node] : lane_nodes_of_grid<Dim, Real>(s, with_ghost_layer(s.grid)))
+    otherwise[static_cast<size_t>(node)] = tractions(lane_node);
   return otherwise;
 }
 
@@ -130,7 +131,7 @@ template <class Real>
 constexpr double engine_tolerance = sizeof(Real) == 8 ? 1e-12 : 1e-5;
 /// What the bodies below are like.
 struct BodyShape {
-  bool cubic = false;
+  bool equal_spacing = false;
   double drift = 0;            ///< m/s, of the whole body in all directions
   bool on_lower_face = false;  ///< of x
   bool slivers = false;        ///< particles 2^-4 to 2^-40 cells beside a face
@@ -142,11 +143,11 @@ struct BodyShape {
 /// In float all loads, stresses and velocities are to be `amplitude` times as large, so that particles move
 /// little: the particle kernels round positions in the grid, and cell lanes positions in a cell. A particle
 /// that passes a face a step sooner or later for that has another velocity gradient in this step. Which of
-/// two float engines is nearer to double is tested in flying_bodies.cpp.
+/// two float engines is nearer to double is tested in rigid_translation.cpp.
 template <int Dim, class Real, template <int, class> class BasisOf = LinearBasis>
 struct BothEngines {
   static constexpr Real amplitude = sizeof(Real) == 4 ? Real(1e-5) : Real(1);
-  static constexpr bool splines = BasisOf<Dim, Real>::reach > 0;
+  static constexpr bool splines = BasisOf<Dim, Real>::ghost_layers > 0;
   UniformGrid<Dim, Real> grid;                   ///< without a ghost layer
   BasisOf<Dim, Real> basis;                      ///< complete once the engines run
   ParticleBlock<Dim, Real, Device> block, copy;  ///< for the particle kernels, for cell lanes
@@ -156,13 +157,13 @@ struct BothEngines {
   long long moved = 0;              ///< from cell to cell, or packed anew
   bool load_seen[4] = {};           ///< by GroupLoad
   std::vector<TractionMask> masks;  ///< declared at the grid's nodes
-  TractionMask conservative = 0;
+  TractionMask at_all_active_nodes = 0;
   SurfacePoints<Dim, Real, Device> surface;  ///< none, unless a test has some
   CarriedTractions<Device> carried;          ///< by particles; none, unless a test has some
 
   explicit BothEngines(const BodyShape& shape, unsigned seed = 81) {
     grid = make_grid<Dim, Real>({{42, 22, 22}});
-    if (shape.cubic) {
+    if (shape.equal_spacing) {
       Vector<Dim, Real> h;
       for (int i = 0; i < Dim; ++i) h[i] = Real(0.5);
       grid = UniformGrid<Dim, Real>(grid.lower, h, grid.cells);
@@ -173,7 +174,7 @@ struct BothEngines {
       lanes.grid = grid;
     }
     Random random(seed);
-    std::vector<Vector<Dim, Real>> places;
+    std::vector<Vector<Dim, Real>> positions;
     for_each_cell(grid, [&](const Vector<Dim, int>& cell) {
       double r2 = 0;
       for (int i = 0; i < Dim; ++i) {
@@ -193,16 +194,16 @@ struct BothEngines {
           }
           x[i] = grid.lower[i] + grid.spacing[i] * (static_cast<Real>(cell[i]) + xi);
         }
-        places.push_back(x);
+        positions.push_back(x);
       }
     });
-    random.shuffle(places);
-    const int n = static_cast<int>(places.size());
+    random.shuffle(positions);
+    const int n = static_cast<int>(positions.size());
     block = allocate_particles<Dim, Real, Device>(n);
     edit(block, [&](const auto& p) {
       for (int k = 0; k < n; ++k) {
         for (int i = 0; i < Dim; ++i) {
-          p.position(k, i) = places[static_cast<size_t>(k)][i];
+          p.position(k, i) = positions[static_cast<size_t>(k)][i];
           p.velocity(k, i) = amplitude * static_cast<Real>(shape.drift + random(-0.1, 0.1));
         }
         p.volume(k) = grid.cell_volume() / Real(1 << Dim) * random.draw<Real>(0.9, 1.1);
@@ -260,7 +261,7 @@ struct BothEngines {
     if constexpr (!splines) lanes.surface = pack_surface_points(Exec(), surface, grid);
     edit(state.occupancy.tractions,
          [&](const auto& host) { std::copy(masks.begin(), masks.end(), host.data()); });
-    state.occupancy.conservative = lanes.boundary.conservative = conservative;
+    state.occupancy.at_all_active_nodes = lanes.boundary.at_all_active_nodes = at_all_active_nodes;
     if (carried.any()) set_carried_tractions(state.occupancy, basis, carried.particle, carried.tractions);
     lanes.boundary.bits.carried = carried;
     edit(state.nodes.fixed_components, [&](const auto& host) {
@@ -281,7 +282,7 @@ struct BothEngines {
     for (int n = 0; n < steps; ++n) {
       REQUIRE(lane_step(Exec(), lanes, material, volume, lane_field_at(n + 1), options) == -1);
       REQUIRE(add(n + 1) == -1);
-      moved += count_leavers(Exec(), lanes.memory);  // none after packing anew
+      moved += count_migrating(Exec(), lanes.memory);  // none after packing anew
       REQUIRE(step(Exec(), state, bodies, basis, field_at(n), options) == -1);
       if (n % 5 == 0) note_loads();
     }
@@ -313,7 +314,7 @@ struct BothEngines {
   /// A node's numbers along the axes in the grid without a ghost layer.
   Vector<Dim, int> ijk_of(int node) const {
     auto ijk = basis.grid.node_ijk(node);
-    for (int i = 0; i < Dim; ++i) ijk[i] -= basis.reach;
+    for (int i = 0; i < Dim; ++i) ijk[i] -= basis.ghost_layers;
     return ijk;
   }
   void note_loads() {

@@ -48,15 +48,15 @@ std::uint64_t hash_of(const ParticleBlock<Dim, Real, Device>& particles) {
 /// Without load, cells cubes or not, at rest and moving.
 template <int Dim, class Real, class Engines>
 void check_free_bodies() {
-  for (const bool cubic : {true, false})
+  for (const bool equal_spacing : {true, false})
     for (const double drift : {0., 5.}) {
       if (sizeof(Real) == 4 && drift > 0) continue;
-      Engines engines({cubic, drift});
+      Engines engines({equal_spacing, drift});
       // In single precision the direction in which a node turns around, and damping acts, hangs on round-off.
       engines.options.damping = drift > 0 || sizeof(Real) == 4 ? Real(0) : Real(0.05);
       engines.options.gravity[Dim - 1] = -engines.amplitude;
       engines.run(elastic<Dim, Real>(), DeterminantVolume{}, [](int) { return NoVirtualStress{}; });
-      CAPTURE(cubic, drift, engines.moved);
+      CAPTURE(equal_spacing, drift, engines.moved);
       check_same(engines);
       CHECK((engines.moved > 10 || drift == 0));
       CHECK((engines.lanes.repacked > 0 || drift == 0 || Dim == 1));
@@ -64,7 +64,7 @@ void check_free_bodies() {
 }
 
 /// A step of particles next to the faces of their cells: nodes with next to no mass, and accelerations as
-/// large as that is small. Their places are the same to the last bit in both engines.
+/// large as that is small. Their positions are the same to the last bit in both engines.
 template <int Dim, class Real, class Engines>
 void check_slivers() {
   BodyShape shape;
@@ -85,9 +85,9 @@ void check_slivers() {
 
 /// Under a pressure or another uniform stress, of another size in every step.
 template <int Dim, class Real, class Engines>
-void check_uniform_stress(bool cubic, bool pressure) {
+void check_uniform_stress(bool equal_spacing, bool pressure) {
   const double drift = sizeof(Real) == 4 ? 0 : pressure ? 2 : 5;
-  Engines engines({cubic, drift});
+  Engines engines({equal_spacing, drift});
   engines.declare_everywhere(1);
   engines.run(elastic<Dim, Real>(), DeterminantVolume{}, [&](int n) {
     UniformVirtualStress<Dim, Real> f;
@@ -96,7 +96,7 @@ void check_uniform_stress(bool cubic, bool pressure) {
     f.stress[0] = factor * (pressure ? pressure_stress<Dim>(Real(2)) : full_tensor<Dim, Real>());
     return f;
   });
-  CAPTURE(cubic, pressure, engines.moved);
+  CAPTURE(equal_spacing, pressure, engines.moved);
   check_same(engines);
   engines.check_boundary();
   CHECK((engines.moved > 0 || drift == 0));
@@ -107,34 +107,34 @@ void check_uniform_stress(bool cubic, bool pressure) {
   CHECK(!engines.load_seen[static_cast<int>(GroupLoad::mixed)]);
 }
 
-/// Under tractions that change from node to node, some of them conservative.
+/// Under tractions that change from node to node, some of them at all active nodes.
 template <int Dim, class Real, class Engines>
 void check_mixed_tractions() {
-  for (const TractionMask conservative : {0u, 2u}) {
+  for (const TractionMask at_all_active_nodes : {0u, 2u}) {
     Engines engines({true, sizeof(Real) == 4 ? 0. : 5.});
     engines.declare([](const Vector<Dim, int>& ijk) { return striped<Dim>(ijk); });
     engines.declare_everywhere(8);
-    engines.conservative = conservative;
+    engines.at_all_active_nodes = at_all_active_nodes;
     const auto f = four_uniform_stresses<Dim, Real>(engines.amplitude);
     engines.run(elastic<Dim, Real>(), DeterminantVolume{}, [&](int) { return f; });
-    CAPTURE(conservative, engines.moved);
+    CAPTURE(at_all_active_nodes, engines.moved);
     check_same(engines);
     engines.check_boundary();
     CHECK(engines.load_seen[static_cast<int>(GroupLoad::mixed)]);
   }
 }
 
-/// Sliding along a wall and held by it.
+/// Sliding along a wall and fixed to it.
 template <int Dim, class Real, class Engines>
 void check_body_at_a_wall() {
-  for (const int held : {1, (1 << Dim) - 1}) {
+  for (const int fixed : {1, (1 << Dim) - 1}) {
     Engines engines({false, 0, true});
-    engines.lanes.memory.walls.fixed[0][0] = static_cast<ComponentMask>(held);
+    engines.lanes.memory.walls.fixed[0][0] = static_cast<ComponentMask>(fixed);
     engines.lanes.memory.walls.fixed[Dim - 1][1] = 1;  // far from the body
     engines.options.gravity[0] = -5 * engines.amplitude;
     engines.options.damping = Real(0.1);
     engines.declare_everywhere(1);
-    if (held == 1 && sizeof(Real) == 8)
+    if (fixed == 1 && sizeof(Real) == 8)
       edit(engines.block, [](const auto& p) {
         for (int k = 0; k < p.count(); ++k)
           for (int i = 1; i < Dim; ++i) p.velocity(k, i) += 1;
@@ -143,7 +143,7 @@ void check_body_at_a_wall() {
     f.count = 1;
     f.stress[0] = pressure_stress<Dim>(engines.amplitude);
     engines.run(elastic<Dim, Real>(), DeterminantVolume{}, [&](int) { return f; });
-    CAPTURE(held, engines.moved);
+    CAPTURE(fixed, engines.moved);
     check_same(engines);
     engines.check_boundary();
   }
@@ -162,7 +162,7 @@ void check_fields_of_all_kinds() {
           if (const int k = (ijk[i] + i + 10) / 2 % 5; k < 4) mask |= 1u << k;
         return mask;
       });
-      engines.conservative = 4;
+      engines.at_all_active_nodes = 4;
     } else {
       engines.declare_everywhere(15);
     }

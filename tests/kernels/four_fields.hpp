@@ -11,7 +11,7 @@ namespace vsb::test {
 
 /// The centre of the body of BothEngines' cavity, and anything else of the fields that depends on its grid.
 template <int Dim, class Real>
-Vector<Dim, Real> place_in(const UniformGrid<Dim, Real>& grid, Real cells) {
+Vector<Dim, Real> position_in(const UniformGrid<Dim, Real>& grid, Real cells) {
   Vector<Dim, Real> x;
   for (int i = 0; i < Dim; ++i) x[i] = grid.lower[i] + cells * grid.spacing[i];
   return x;
@@ -32,7 +32,7 @@ TractionFields<Dim, Real> four_fields(const UniformGrid<Dim, Real>& grid, Real a
     all[i] = Real(1);
     up[i] = static_cast<Real>(i == 0);
   }
-  const auto centre = place_in<Dim, Real>(grid, Real(6.7));
+  const auto centre = position_in<Dim, Real>(grid, Real(6.7));
   f.field[0] = affine;
   f.field[1] = RadialBlend<Dim, Real>{centre,
                                       all,

@@ -18,14 +18,14 @@ struct RandomShape {
   };
   std::vector<Part> parts;
 
-  /// Within a box of half width `reach` about the origin.
-  RandomShape(Random& random, double reach) {
+  /// Within a box of half width `half_width` about the origin.
+  RandomShape(Random& random, double half_width) {
     const int count = 2 + random.index(3);
     for (int n = 0; n < count; ++n) {
       Part part{random.index(2) == 0, n == 0 || random.index(2) == 0, {}, {}};
       for (int i = 0; i < Dim; ++i) {
-        part.half[i] = (n == 0 ? random(0.65, 0.85) : random(0.15, 0.4)) * reach;
-        part.center[i] = n == 0 ? 0 : random(-0.5, 0.5) * reach;
+        part.half[i] = (n == 0 ? random(0.65, 0.85) : random(0.15, 0.4)) * half_width;
+        part.center[i] = n == 0 ? 0 : random(-0.5, 0.5) * half_width;
       }
       parts.push_back(part);
     }
@@ -70,14 +70,14 @@ struct RandomBody {
     Vector<Dim, double> shift;
     for (int i = 0; i < Dim; ++i) shift[i] = random(0, 1) * spacing;
     const int n = 2 * static_cast<int>(half_width / spacing) + 2;
-    std::vector<Vector<Dim, double>> places;
+    std::vector<Vector<Dim, double>> positions;
     int faces = 0;
     const CellNumbering<Dim> lattice{count(n)};
     for_each_cell(lattice, [&](const Vector<Dim, int>& ijk) {
       Vector<Dim, double> x;
       for (int i = 0; i < Dim; ++i) x[i] = (ijk[i] - n / 2) * spacing + shift[i];
       if (!shape(x)) return;
-      places.push_back(center + x);
+      positions.push_back(center + x);
       for (int i = 0; i < Dim; ++i)
         for (const double step : {-spacing, spacing}) {
           auto neighbour = x;
@@ -86,10 +86,10 @@ struct RandomBody {
         }
     });
     area = faces * std::pow(spacing, Dim - 1);
-    block = allocate_particles<Dim, double, Device>(static_cast<int>(places.size()));
+    block = allocate_particles<Dim, double, Device>(static_cast<int>(positions.size()));
     edit(block, [&](const auto& p) {
       for (int k = 0; k < p.count(); ++k) {
-        for (int i = 0; i < Dim; ++i) p.position(k, i) = places[static_cast<size_t>(k)][i];
+        for (int i = 0; i < Dim; ++i) p.position(k, i) = positions[static_cast<size_t>(k)][i];
         p.volume(k) = std::pow(spacing, Dim);
         p.mass(k) = p.volume(k);
       }
@@ -104,10 +104,10 @@ struct RandomBody {
 
   /// The resultant of a field at the boundary nodes or at all active ones; the torque about the origin.
   template <class Field>
-  Balance<Dim> resultant(const Field& field, bool conservative) {
+  Balance<Dim> resultant(const Field& field, bool at_all_active_nodes) {
     auto state = make_state(block.particles, basis);
     Kokkos::deep_copy(state.occupancy.tractions, 1u);
-    state.occupancy.conservative = conservative ? 1 : 0;
+    state.occupancy.at_all_active_nodes = at_all_active_nodes ? 1 : 0;
     REQUIRE(update_occupancy(Exec(), block.particles, state.occupancy, basis) == -1);
     return balance(Exec(), state, std::vector<Body<double>>{}, basis, field, StepOptions<Dim, double>{});
   }

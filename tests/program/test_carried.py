@@ -26,7 +26,7 @@ until_static = { max_steps = 20000 }
 
 class LargeStrain(ProgramTest):
     def column(self, *more):
-        """Place of the end, stresses, and fields of the column at rest; its summary."""
+        """Position of the end, stresses, and fields of the column at rest; its summary."""
         summary = self.run_scene(self.write(COLUMN), "--set", "time.until_static.max_steps=20000", *more, out="column")
         self.assertTrue(summary["static"])
         fields = last_fields(self.folder / "column")
@@ -163,10 +163,10 @@ class MissedSurface(ProgramTest):
 
 class TornBody(ProgramTest):
     def test_a_load_that_tore_off_is_told(self):
-        done = vsb("run", self.write(PULLED), "--quiet", "--out", self.folder / "torn")
+        done = vsb("run", self.write(PULLED), "--quiet", "--out", self.folder / "pulled")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertRegex(done.stderr, r"traction 'traction 1' has lost \d+ % of its resultant.*quadratic_bspline")
-        summary = json.loads((self.folder / "torn" / "summary.json").read_text())
+        summary = json.loads((self.folder / "pulled" / "summary.json").read_text())
         self.assertLess(abs(summary["net_force"][0]), 0.5e6)
 
 

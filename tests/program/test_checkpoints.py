@@ -231,8 +231,8 @@ class Damaged(CheckpointTest):
     def test_a_flipped_bit_anywhere_is_noticed(self):
         self.column(100)
         good = self.checkpoint.read_bytes()
-        places = sorted({*range(0, len(good), len(good) // 40), len(good) - SEAL - 1, len(good) - SEAL, len(good) - 1})
-        for n, at in enumerate(places):
+        offsets = sorted({*range(0, len(good), len(good) // 40), len(good) - SEAL - 1, len(good) - SEAL, len(good) - 1})
+        for n, at in enumerate(offsets):
             bad = bytearray(good)
             bad[at] ^= 1 << n % 8
             self.checkpoint.write_bytes(bad)
@@ -283,7 +283,7 @@ class Damaged(CheckpointTest):
         self.assertEqual(data[-SEAL:], b"vsb-seal" + hashlib.sha256(data[:-SEAL]).digest())
 
 
-class NoRoom(CheckpointTest):
+class NoSpace(CheckpointTest):
     def test_a_limit_of_file_size_leaves_what_was_there(self):
         self.column(100)
         earlier = self.contents("column*")

@@ -133,7 +133,7 @@ class Convergence(StudyTest):
         (x, y, _), force = summary["torque_about"], summary["net_force"]
         self.assertLess(abs(x - y), 1e-7)
         self.assertAlmostEqual(float(line["value"]), y * force[0] - x * force[1], delta=1e-6)
-        # Negative values have no place on the logarithmic scale that a chart has by default, and are drawn all the same.
+        # Negative values do not show on the logarithmic scale that a chart has by default, and are drawn all the same.
         self.assertLess(float(self.line(table, "0.25", "smallest_principal_stress")["value"]), 0)
         self.assertIn("mine_figures.png", done.stdout)
         self.assertNotIn("no case has a figure to draw", done.stdout)
@@ -141,7 +141,7 @@ class Convergence(StudyTest):
     def test_studies_that_could_have_no_figure_are_refused(self):
         self.refuse(STUDY + "[chart]\nfigures = []\n", "chart.figures = []", "must name a figure: one of", "largest_displacement")
         self.refuse(STUDY + "[chart]\nfigures = [\"e_rr\"]\n", "e_rr", line=11)
-        self.refuse(STUDY + "[reach]\nfigures = [\"e_rr\"]\nlevel = 0.1\n", "no scene of this study is compared with an exact solution")
+        self.refuse(STUDY + "[target]\nfigures = [\"e_rr\"]\nlevel = 0.1\n", "no scene of this study is compared with an exact solution")
         fine = STUDY.replace("0.5 }", "0.5, fine = true }").replace("0.25 }", "0.25, fine = true }").replace("0.125 }", "0.125, fine = true }")
         self.refuse(fine, "every case is marked fine; give --fine")
         # The only case that gives the figure is expected to fail.

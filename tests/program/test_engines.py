@@ -125,7 +125,7 @@ class BothEngines(ProgramTest):
                                     "--set", f'traction[1].imposition="{second}"')
 
     def test_single_precision(self):
-        # Places are relative to the cell, so single precision loses less there than with the particle kernels.
+        # Positions are relative to the cell, so single precision loses less there than with the particle kernels.
         def fields(engine, precision):
             out = self.folder / f"{engine}-{precision}"
             done = vsb("run", SCENES / "cylinder.toml", "--set", f"precision={precision}", *hundred_steps("cylinder"),

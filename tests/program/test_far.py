@@ -146,7 +146,7 @@ class FarFromTheOrigin(ProgramTest):
         done = vsb("check", self.write(text))
         self.assertIn("torque about (524291, 4194307) m, the centre of mass at the start,", done.stdout)
 
-    def test_messages_have_the_digits_of_the_place(self):
+    def test_messages_have_the_digits_of_the_position(self):
         text = column(MAP, "double", "auto").replace(f"upper = [{MAP[0] + 4}, {MAP[1] + 4}]", f"upper = [{MAP[0] + 4}, {MAP[1] + 8}]")
         done = vsb("check", self.write(text))
         self.assertEqual(done.returncode, 2)
@@ -172,7 +172,7 @@ class FarFromTheOrigin(ProgramTest):
         self.assertFalse((self.folder / "long").exists())
 
     def test_small_displacements_in_single_precision(self):
-        """At the origin, too: what a step adds to the place in a cell must be more than round-off."""
+        """At the origin, too: what a step adds to the position in a cell must be more than round-off."""
         for modulus, precision, told in (("2e7", "float", False), ("2e10", "float", True), ("2e10", "double", False)):
             done = vsb("check", self.write(column((0.0, 0.0), precision, "auto").replace("2e7", modulus)))
             self.assertEqual(done.returncode, 0, done.stderr)

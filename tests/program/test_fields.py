@@ -217,9 +217,9 @@ class Reading(FieldTest):
             self.assertEqual(done.returncode, 2, f"{traction}\n{done.stdout}")
             for word in words:
                 self.assertIn(word, done.stderr, traction)
-        held = vsb("check", self.disc("pressure = 1\nnodes = 'all'\nself_balanced = true", more="[faces]\nx_min = 'roller'\n"))
-        self.assertEqual(held.returncode, 2)
-        self.assertIn("is for free bodies", held.stderr)
+        fixed = vsb("check", self.disc("pressure = 1\nnodes = 'all'\nself_balanced = true", more="[faces]\nx_min = 'roller'\n"))
+        self.assertEqual(fixed.returncode, 2)
+        self.assertIn("is for free bodies", fixed.stderr)
 
     def test_axis_in_3d(self):
         text = """dimension = 3

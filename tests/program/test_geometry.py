@@ -130,7 +130,7 @@ class Volumes(GeometryTest):
             self.assertEqual(out.count(f"body '{name}': particles"), 1)
 
 
-class Places(GeometryTest):
+class Positions(GeometryTest):
     def refuse(self, scene, line, *words):
         done = vsb("run", scene, "--out", self.folder / "refused")
         self.assertEqual(done.returncode, 2, done.stdout + done.stderr)

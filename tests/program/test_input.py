@@ -155,10 +155,10 @@ class Input(ProgramTest):
         fall = GOOD.replace("[[traction]]\npressure = 1e3\n", "").replace("youngs_modulus = 1e6", "youngs_modulus = 1e4")
         fall = "gravity = [0.0, -9.81]\n" + fall  # weight over modulus: 2 for 2 m, were it held
         self.assertNotIn("units", vsb("check", self.write(fall)).stderr)
-        held = fall + '[faces]\ny_min = "fixed"\n'
-        self.assertIn("1.96e+04 Pa / 1e+04 Pa = 2: check the units".replace("1.96e+04 Pa", "").strip(), vsb("check", self.write(held)).stderr)
+        fixed = fall + '[faces]\ny_min = "fixed"\n'
+        self.assertIn("1.96e+04 Pa / 1e+04 Pa = 2: check the units".replace("1.96e+04 Pa", "").strip(), vsb("check", self.write(fixed)).stderr)
         # The height that counts is that of the body, not that of the grid above it.
-        tall = held.replace("youngs_modulus = 1e4", "youngs_modulus = 1e6").replace("upper = [4.0, 4.0]", "upper = [4.0, 64.0]")
+        tall = fixed.replace("youngs_modulus = 1e4", "youngs_modulus = 1e6").replace("upper = [4.0, 4.0]", "upper = [4.0, 64.0]")
         self.assertNotIn("units", vsb("check", self.write(tall)).stderr)
 
     def test_overrides_that_remove_keys(self):

@@ -76,13 +76,13 @@ class LeavesTheGrid(ProgramTest):
             .replace(", 1.0]", ", 1.0, 1.0]").replace(", 2.0]", ", 2.0, 2.0]")
         far = BLOCK.replace("[0.0, 0.0], upper = [4.0, 4.0]", "[500000.0, 4200000.0], upper = [500004.0, 4200004.0]") \
             .replace("[1.0, 1.0]", "[500001.0, 4200001.0]").replace("[2.0, 2.0]", "[500002.0, 4200002.0]")
-        for name, text, place in (("line", line, r"4(\.00\d+)?"), ("space", space, r"4(\.00\d+)?, 1\.\d+, 1\.\d+"),
+        for name, text, position in (("line", line, r"4(\.00\d+)?"), ("space", space, r"4(\.00\d+)?, 1\.\d+, 1\.\d+"),
                                   ("far", far, r"500004(\.00\d*)?, 4200001\.\d+")):
             for engine in ("cell_lanes", "particles"):
                 done = vsb("run", self.write(text), "--out", self.folder / f"{name}-{engine}", "--set", "precision=float",
                            "--set", f"method.engine={engine}")
                 self.assertEqual(done.returncode, 8, done.stderr)
-                self.assertRegex(done.stderr, rf"at step 106[1-4], .* left the grid at the open face x_max, at \({place}\) m")
+                self.assertRegex(done.stderr, rf"at step 106[1-4], .* left the grid at the open face x_max, at \({position}\) m")
 
     def test_from_a_polar_grid(self):
         polar = BLOCK.replace("lower = [0.0, 0.0], upper = [4.0, 4.0], spacing = 0.5",

@@ -139,7 +139,7 @@ class Cylinder(ProgramTest):
         compared, rho = summary["compared"], self.plastic_radius()
         self.assertAlmostEqual(compared["exact_radius"], rho, delta=1e-12)
         self.assertAlmostEqual(compared["plastic_radius"], rho, delta=SPACING)
-        self.assertAlmostEqual(compared["plastic_reach"], rho, delta=SPACING)
+        self.assertAlmostEqual(compared["largest_plastic_radius"], rho, delta=SPACING)
 
         fields = last_fields(self.folder / "yield-cylinder")
         x, s, e = fields["position"], fields["cauchy_stress"], fields["plastic_strain"]

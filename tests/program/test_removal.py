@@ -54,7 +54,7 @@ class Slice(ProgramTest):
         for stage, full in zip(stages, (136, 264, 1080)):
             self.assertTrue(stage["removed"] and stage["at_rest"])
             self.assertAlmostEqual(4 * stage["failed"] / full, 1, delta=0.05, msg=str(stage))
-        # The paper: 1 to 2 rows, 6 to 7, nearly 20. Seen from the mean reach and the farthest particle.
+        # The paper: 1 to 2 rows, 6 to 7, nearly 20. Seen from the mean depth and the farthest particle.
         for stage, mean, farthest in zip(stages, (1, 5, 14), (3, 7.5, 20)):
             self.assertGreater(stage["rows_mean"], mean)
             self.assertLess(stage["rows"], farthest)
@@ -62,17 +62,17 @@ class Slice(ProgramTest):
         self.assertAlmostEqual(stages[2]["rows"] / 19.8, 1, delta=0.05)
         # The wall is cut through, with the ring's outer face among the failed.
         self.assertFalse(stages[3]["removed"] or stages[3]["at_rest"])
-        self.assertRegex(self.removal["reason"], r"the body is torn: failed cells join the hole and the outside \(\d")
+        self.assertRegex(self.removal["reason"], r"the body is cut through: failed cells join the hole and the outside \(\d")
         self.assertGreater(stages[3]["rows"], (B - A) / ROW - 2)
 
-    def test_what_is_left_keeps_ids_and_places(self):
-        place = lattice()
-        self.assertEqual(len(place), 1974)
-        present = np.ones(len(place), dtype=bool)
+    def test_what_is_left_keeps_ids_and_positions(self):
+        position = lattice()
+        self.assertEqual(len(position), 1974)
+        present = np.ones(len(position), dtype=bool)
         for stage in self.removal["stage"]:
             fields = self.frame(stage["last_step"])
             np.testing.assert_array_equal(fields["id"], np.flatnonzero(present))
-            np.testing.assert_allclose(fields["start"][:, :2], place[present], atol=1e-12)
+            np.testing.assert_allclose(fields["start"][:, :2], position[present], atol=1e-12)
             self.assertEqual(stage["particles"], present.sum())
             np.testing.assert_allclose(fields["mass"], 2500 * ROW**2, rtol=1e-12)
             if not stage["removed"]:
@@ -81,7 +81,7 @@ class Slice(ProgramTest):
             left = self.frame(following["last_step"])["id"]
             self.assertEqual(len(left), present.sum() - stage["failed"])
             gone = np.setdiff1d(np.flatnonzero(present), left)
-            rows = (np.hypot(*place[gone].T) - A) / ROW
+            rows = (np.hypot(*position[gone].T) - A) / ROW
             self.assertAlmostEqual(stage["rows"], rows.max(), delta=1e-9)
             present[gone] = False
 
@@ -113,7 +113,7 @@ class Slice(ProgramTest):
 
     def test_the_screen_tells_of_every_stage(self):
         for number, stage in enumerate(self.removal["stage"], 1):
-            self.assertIn(f"stage {number}: {stage['failed']} of {stage['particles']} particles beyond the threshold, reach "
+            self.assertIn(f"stage {number}: {stage['failed']} of {stage['particles']} particles beyond the threshold, depth "
                           f"{stage['rows']:.2f} rows", self.done.stdout)
         self.assertIn("\ncollapse: " + self.removal["reason"], self.done.stdout)
         self.assertRegex(self.done.stdout, r"peak memory [\d.]+ MB")

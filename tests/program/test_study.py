@@ -178,7 +178,7 @@ class Verdicts(StudyTest):
         _, table = self.study(expected)
         self.assertEqual([(row["figure"], row["verdict"]) for row in table], [("outcome", "pass")])
 
-    def test_reach(self):
+    def test_target(self):
         """The cost of a level of error: between the cases a power law through both, beyond them extrapolated."""
         text = """
             title = "Coarse cylinders"
@@ -198,8 +198,8 @@ class Verdicts(StudyTest):
         better, worse = sorted((coarse["error"], fine["error"]))
         levels = {"between": math.sqrt(better * worse), "beyond": better / 1.01, "less": 1.01 * worse}
         for name, level in levels.items():
-            _, table = self.study(text + f"[reach]\nfigures = [\"e_u\"]\nlevel = {level!r}\n", out=name)
-            line, = (row for row in table if row["series"] == "reach" and row["figure"].startswith("particle-steps to e_u"))
+            _, table = self.study(text + f"[target]\nfigures = [\"e_u\"]\nlevel = {level!r}\n", out=name)
+            line, = (row for row in table if row["series"] == "target" and row["figure"].startswith("particle-steps to e_u"))
             self.assertEqual(line["case"], "uniform")
             if name == "less":
                 self.assertEqual(float(line["value"]), coarse["cost"])
@@ -264,9 +264,9 @@ class BadStudies(StudyTest):
                                      ("ratio = { lowest = 0 }", "", "exactly one of ratio, difference and rate", 23)):
             self.refuse(GOOD + relation.replace(old, new), word, line=line)
 
-    def test_bad_reach(self):
-        self.refuse(GOOD + "[reach]\nfigures = [\"e_u\"]\nlevel = 0\n", "level", line=25)
-        self.refuse(GOOD + "[reach]\nfigures = [\"e_v\"]\nlevel = 1\n", "e_v", line=24)
+    def test_bad_target(self):
+        self.refuse(GOOD + "[target]\nfigures = [\"e_u\"]\nlevel = 0\n", "level", line=25)
+        self.refuse(GOOD + "[target]\nfigures = [\"e_v\"]\nlevel = 1\n", "e_v", line=24)
 
     def test_unknown_studies(self):
         done = vsb("study", "colum", "--out", self.folder / "out")

@@ -57,7 +57,8 @@ TEMPLATE_TEST_CASE_SIG("the basis reproduces multilinear fields and their gradie
     const auto x = random_point(grid, random);
     REQUIRE(basis.contains(x));
     const auto shape = basis.shape(x);
-    double one = 0, value = 0, zero[Dim] = {}, gradient[Dim] = {}, place[Dim] = {}, identity[Dim][Dim] = {};
+    double one = 0, value = 0, zero[Dim] = {}, gradient[Dim] = {}, position[Dim] = {},
+           identity[Dim][Dim] = {};
     std::set<int> nodes;
     for (int a = 0; a < basis.support; ++a) {
       const auto xa = grid.node_position(shape.node[a]);
@@ -69,7 +70,7 @@ TEMPLATE_TEST_CASE_SIG("the basis reproduces multilinear fields and their gradie
         const auto dN = static_cast<double>(shape.dN[a][i]);
         zero[i] += dN;
         gradient[i] += dN * f(xa);
-        place[i] += static_cast<double>(shape.N[a]) * static_cast<double>(xa[i]);
+        position[i] += static_cast<double>(shape.N[a]) * static_cast<double>(xa[i]);
         for (int j = 0; j < Dim; ++j) identity[j][i] += dN * static_cast<double>(xa[j]);
       }
     }
@@ -80,7 +81,7 @@ TEMPLATE_TEST_CASE_SIG("the basis reproduces multilinear fields and their gradie
     CHECK_THAT(value, WithinAbs(f(x), round_off));
     for (int i = 0; i < Dim; ++i) {
       CHECK_THAT(zero[i], WithinAbs(0, 16 * epsilon<Real>));
-      CHECK_THAT(place[i], WithinAbs(static_cast<double>(x[i]), 16 * epsilon<Real>));
+      CHECK_THAT(position[i], WithinAbs(static_cast<double>(x[i]), 16 * epsilon<Real>));
       CHECK_THAT(gradient[i], WithinAbs(slope[i] * f(x) / factor(x, i), round_off));
       for (int j = 0; j < Dim; ++j) CHECK_THAT(identity[i][j], WithinAbs(i == j, 100 * epsilon<Real>));
     }

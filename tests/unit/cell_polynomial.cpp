@@ -41,7 +41,7 @@ void check_lanes(const T& value, const Expected& expected) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE_SIG("a nodal field and its gradient at any place", "", ((int Dim, typename T), Dim, T),
+TEMPLATE_TEST_CASE_SIG("a nodal field and its gradient at any position", "", ((int Dim, typename T), Dim, T),
                        (1, double), (2, double), (3, double), (1, (Pack<double, 4>)), (2, (Pack<double, 4>)),
                        (3, (Pack<double, 4>)), (3, (Pack<float, 8>))) {
   Random random(92);

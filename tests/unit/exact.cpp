@@ -101,9 +101,9 @@ TEST_CASE("ellipse: equilibrium, compatibility and plane strain at inner points"
   const auto component = [&](int c) {
     return [=](double x, double y) { return ellipse.stress({{x, y}})[c]; };
   };
-  for (const auto& place :
+  for (const auto& point :
        {Vector<2, double>{{2.5, 0.7}}, {{-0.6, 2.1}}, {{-3, -1}}, {{4, -6}}, {{0.01, -1.7}}}) {
-    const double x = place[0], y = place[1];
+    const double x = point[0], y = point[1];
     CAPTURE(x, y);
     const auto ddx = [&](const auto& f) { return derivative([&](double t) { return f(t, y); }, x); };
     const auto ddy = [&](const auto& f) { return derivative([&](double t) { return f(x, t); }, y); };

@@ -57,13 +57,13 @@ MappedMesh<2, double, Host> ring(int radial, int around) {
 /// A grid that counts the walks that it is asked for, and the cells that are looked at without one.
 struct CountingGrid : MappedGrid<2, double> {
   long long& asked;
-  Place walk(const Vector<2, double>& x, int start) const {
+  Location walk(const Vector<2, double>& x, int start) const {
     ++asked;
     return MappedGrid<2, double>::walk(x, start);
   }
-  bool inside(const Vector<2, double>& x, Place& place) const {
+  bool inside(const Vector<2, double>& x, Location& location) const {
     ++asked;
-    return MappedGrid<2, double>::inside(x, place);
+    return MappedGrid<2, double>::inside(x, location);
   }
 };
 
@@ -78,12 +78,12 @@ TEMPLATE_TEST_CASE_SIG("the inverse map undoes the forward map in distorted cell
     for (int trial = 0; trial < 100; ++trial) {
       const auto cell = random_cell(mesh.grid, random);
       const auto xi = random_local<Dim, Real>(random);
-      const auto place = mesh.grid.locate(forward(mesh.grid, cell, xi));
-      REQUIRE(place.found);
+      const auto location = mesh.grid.locate(forward(mesh.grid, cell, xi));
+      REQUIRE(location.found);
       for (int i = 0; i < Dim; ++i) {
-        CHECK(place.cell[i] == cell[i]);
+        CHECK(location.cell[i] == cell[i]);
         // Positions up to 4 m are rounded; edges are as short as a tenth of 0.25 m.
-        CHECK_THAT(place.xi[i], WithinAbs(static_cast<double>(xi[i]), 1000 * epsilon<Real>));
+        CHECK_THAT(location.xi[i], WithinAbs(static_cast<double>(xi[i]), 1000 * epsilon<Real>));
       }
     }
   }
@@ -101,11 +101,11 @@ TEST_CASE("cells that are nearly triangles, sheared and slender are inverted too
       });
       for (int trial = 0; trial < 1000; ++trial) {
         const auto xi = random_local<2, double>(random, 0, 1);
-        const auto place = mesh.grid.walk(forward(mesh.grid, {{0, 0}}, xi));
+        const auto location = mesh.grid.walk(forward(mesh.grid, {{0, 0}}, xi));
         CAPTURE(pull, stretch, xi[0], xi[1]);
-        REQUIRE(place.found);
+        REQUIRE(location.found);
         // At the pulled corner det J is a factor 1 - pull smaller than elsewhere.
-        for (int i = 0; i < 2; ++i) CHECK_THAT(place.xi[i], WithinAbs(xi[i], 1e-12));
+        for (int i = 0; i < 2; ++i) CHECK_THAT(location.xi[i], WithinAbs(xi[i], 1e-12));
       }
     }
 }
@@ -129,10 +129,10 @@ TEST_CASE("a curved grid: points of the ring are found by a walk, those of its h
       CHECK(mesh.grid.contains(x) == expected);
       if (!expected) continue;
       ++inside;
-      const auto place = mesh.grid.walk(x);
-      REQUIRE(place.found);
-      CHECK(place.cell[1] == static_cast<int>(number));
-      CHECK(place.cell[0] == static_cast<int>((along - 1) * 1.5));
+      const auto location = mesh.grid.walk(x);
+      REQUIRE(location.found);
+      CHECK(location.cell[1] == static_cast<int>(number));
+      CHECK(location.cell[0] == static_cast<int>((along - 1) * 1.5));
     }
     CHECK(inside > 1000);
   }
@@ -215,7 +215,7 @@ TEMPLATE_TEST_CASE_SIG("the mapped basis reproduces linear fields and their grad
     const auto x = forward(mesh.grid, random_cell(mesh.grid, random), random_local<Dim, Real>(random));
     REQUIRE(basis.contains(x));
     const auto shape = basis.shape(x);
-    double one = 0, zero[Dim] = {}, place[Dim] = {}, identity[Dim][Dim] = {};
+    double one = 0, zero[Dim] = {}, position[Dim] = {}, identity[Dim][Dim] = {};
     std::set<int> nodes;
     for (int a = 0; a < basis.support; ++a) {
       const auto xa = mesh.grid.node_position(shape.node[a]);
@@ -224,7 +224,7 @@ TEMPLATE_TEST_CASE_SIG("the mapped basis reproduces linear fields and their grad
       one += static_cast<double>(shape.N[a]);
       for (int i = 0; i < Dim; ++i) {
         zero[i] += static_cast<double>(shape.dN[a][i]);
-        place[i] += static_cast<double>(shape.N[a] * xa[i]);
+        position[i] += static_cast<double>(shape.N[a] * xa[i]);
         for (int j = 0; j < Dim; ++j)
           identity[j][i] += static_cast<double>(shape.dN[a][i]) * static_cast<double>(xa[j]);
       }
@@ -234,7 +234,7 @@ TEMPLATE_TEST_CASE_SIG("the mapped basis reproduces linear fields and their grad
     for (int i = 0; i < Dim; ++i) {
       // Gradients are up to 10 per metre and positions up to 4 m.
       CHECK_THAT(zero[i], WithinAbs(0, 100 * epsilon<Real>));
-      CHECK_THAT(place[i], WithinAbs(static_cast<double>(x[i]), 32 * epsilon<Real>));
+      CHECK_THAT(position[i], WithinAbs(static_cast<double>(x[i]), 32 * epsilon<Real>));
       for (int j = 0; j < Dim; ++j) CHECK_THAT(identity[i][j], WithinAbs(i == j, 400 * epsilon<Real>));
     }
   }
@@ -320,8 +320,8 @@ TEST_CASE("volumes of cells") {
   // A frustum of a pyramid, h (A + B + sqrt(A B)) / 3.
   const auto frustum =
       make_mapped_mesh<double, Host>(Vector<3, int>{{1, 1, 1}}, [](const Vector<3, int>& ijk) {
-        const double reach = ijk[2] ? 0.5 : 1;
-        return Vector<3, double>{{ijk[0] ? reach : -reach, ijk[1] ? reach : -reach, 3. * ijk[2]}};
+        const double half = ijk[2] ? 0.5 : 1;
+        return Vector<3, double>{{ijk[0] ? half : -half, ijk[1] ? half : -half, 3. * ijk[2]}};
       });
   CHECK_THAT(frustum.grid.cell_volume({{0, 0, 0}}), WithinRel(4. + 1 + 2, 1e-14));
 }
@@ -365,9 +365,9 @@ TEST_CASE("a strongly graded grid: every cell's centre is found in it") {
     return Vector<2, double>{{1 - std::pow(0.8, ij[0]), 1 - std::pow(0.8, ij[1]) + 0.3 * ij[0]}};
   });
   for_each_cell(mesh.grid, [&](const Vector<2, int>& cell) {
-    const auto place = mesh.grid.locate(forward(mesh.grid, cell, {{0.5, 0.5}}));
-    REQUIRE(place.found);
-    CHECK((place.cell[0] == cell[0] && place.cell[1] == cell[1]));
+    const auto location = mesh.grid.locate(forward(mesh.grid, cell, {{0.5, 0.5}}));
+    REQUIRE(location.found);
+    CHECK((location.cell[0] == cell[0] && location.cell[1] == cell[1]));
   });
 }
 
@@ -382,10 +382,10 @@ TEST_CASE("thousands of graded nodes along an axis: few cells are looked at for 
     CHECK(mesh.grid.rectilinear == (shear == 0));
     for_each_cell(mesh.grid, [&](const Vector<2, int>& cell) {
       const auto x = forward(mesh.grid, cell, {{0.25, 0.75}});
-      const auto place = mesh.grid.rectilinear ? mesh.grid.locate(x) : mesh.grid.walk(x);
-      REQUIRE(place.found);
-      CHECK((place.cell[0] == cell[0] && place.cell[1] == cell[1]));
-      CHECK_THAT(place.xi[0], WithinAbs(0.25, 1e-7));
+      const auto location = mesh.grid.rectilinear ? mesh.grid.locate(x) : mesh.grid.walk(x);
+      REQUIRE(location.found);
+      CHECK((location.cell[0] == cell[0] && location.cell[1] == cell[1]));
+      CHECK_THAT(location.xi[0], WithinAbs(0.25, 1e-7));
     });
   }
 }
@@ -398,10 +398,10 @@ TEST_CASE("a rectilinear grid: points on faces, at its ends and outside") {
   const auto& grid = mesh.grid;
   CHECK(grid.raster.cell_count() == 1);
   for (int i = 0; i <= 4; ++i) {
-    const auto place = grid.locate({{x[i], 1}});
-    REQUIRE(place.found);
-    CHECK(place.cell[0] == std::min(i, 3));
-    CHECK(place.xi[0] == (i == 4 ? 1 : 0));
+    const auto location = grid.locate({{x[i], 1}});
+    REQUIRE(location.found);
+    CHECK(location.cell[0] == std::min(i, 3));
+    CHECK(location.xi[0] == (i == 4 ? 1 : 0));
   }
   CHECK(grid.contains({{-1 - 1e-15, 8}}));
   CHECK_FALSE(grid.contains({{-1.01, 8}}));
@@ -425,10 +425,10 @@ TEST_CASE("slender sectors: the start cells are found by a few walks for each of
                                       raster.lower[1] + (ij[1] + 0.5) * raster.spacing[1]}};
       const double r2 = dot(centre, centre);
       if (r2 > 8.99 || r2 < 1.01 || (centre[0] > -0.01 && centre[1] < 0.01)) continue;
-      const auto place = mesh.grid.walk(centre);
-      if (around > 4) REQUIRE(place.found);
-      if (!place.found) continue;  // beyond a chord of the outer circle
-      CHECK(mesh.grid.cell_index(place.cell) == start[static_cast<size_t>(r)]);
+      const auto location = mesh.grid.walk(centre);
+      if (around > 4) REQUIRE(location.found);
+      if (!location.found) continue;  // beyond a chord of the outer circle
+      CHECK(mesh.grid.cell_index(location.cell) == start[static_cast<size_t>(r)]);
       ++found;
     }
     CHECK(found > raster.cell_count() / 3);

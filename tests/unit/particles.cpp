@@ -48,7 +48,7 @@ TEMPLATE_TEST_CASE_SIG("check names the field that has the wrong shape", "",
   }
 }
 
-TEMPLATE_TEST_CASE("padded columns start at different places of a page", "", float, double) {
+TEMPLATE_TEST_CASE("padded columns start at different offsets in a page", "", float, double) {
   const int line = 64 / static_cast<int>(sizeof(TestType));
   for (const int n : {0, 1, 7, 8, 9, 16, 17, 63, 64, 65, 512, 1000, 1023, 1024, 4096, 805392}) {
     const int rows = padded_rows<TestType>(n);

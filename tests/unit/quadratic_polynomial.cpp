@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Quadratic polynomials on a dual cell, of numbers and of packs, against the nodes' B-splines written out.
+/// Quadratic polynomials on a node-centred cell, of numbers and of packs, against the nodes' B-splines
+/// written out.
 #include <vsb/physics/quadratic_polynomial.hpp>
 #include <vsb/views/pack.hpp>
 
@@ -50,9 +51,10 @@ struct All {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE_SIG("a nodal field on a dual cell and its gradient", "", ((int Dim, typename T), Dim, T),
-                       (1, double), (2, double), (3, double), (1, (Pack<double, 4>)), (2, (Pack<double, 4>)),
-                       (3, (Pack<double, 4>)), (3, (Pack<float, 8>))) {
+TEMPLATE_TEST_CASE_SIG("a nodal field on a node-centred cell and its gradient", "",
+                       ((int Dim, typename T), Dim, T), (1, double), (2, double), (3, double),
+                       (1, (Pack<double, 4>)), (2, (Pack<double, 4>)), (3, (Pack<double, 4>)),
+                       (3, (Pack<float, 8>))) {
   Random random(94);
   for (int n = 0; n < 10; ++n) {
     const auto f = draw_vector<stencil_size(Dim), T>(random, -1, 1);
@@ -73,7 +75,7 @@ TEMPLATE_TEST_CASE_SIG("a nodal field on a dual cell and its gradient", "", ((in
   }
 }
 
-TEMPLATE_TEST_CASE_SIG("sums over particles on a dual cell, from products and from moments", "",
+TEMPLATE_TEST_CASE_SIG("sums over particles on a node-centred cell, from products and from moments", "",
                        ((int Dim, typename T), Dim, T), (1, double), (2, double), (3, double),
                        (1, (Pack<double, 4>)), (2, (Pack<double, 4>)), (3, (Pack<double, 4>)),
                        (3, (Pack<float, 8>))) {

@@ -9,21 +9,21 @@
 using namespace vsb;
 using namespace vsb::test;
 
-TEST_CASE("symmetric_index gives each pair of a dimension its own place") {
+TEST_CASE("symmetric_index gives each pair of a dimension its own index") {
   for (const int dimension : {1, 2, 3}) {
-    std::set<int> places;
+    std::set<int> indices;
     for (int i = 0; i < 3; ++i)
-      places.insert(symmetric_index(i, i));  // the normal components, in any dimension
+      indices.insert(symmetric_index(i, i));  // the normal components, in any dimension
     for (int i = 0; i < dimension; ++i)
       for (int j = 0; j < dimension; ++j) {
         CHECK(symmetric_index(i, j) == symmetric_index(j, i));
-        places.insert(symmetric_index(i, j));
+        indices.insert(symmetric_index(i, j));
       }
     CAPTURE(dimension);
     const int size = symmetric_components(dimension);
-    CHECK(static_cast<int>(places.size()) == size);
-    CHECK(*places.begin() == 0);
-    CHECK(*places.rbegin() == size - 1);
+    CHECK(static_cast<int>(indices.size()) == size);
+    CHECK(*indices.begin() == 0);
+    CHECK(*indices.rbegin() == size - 1);
   }
 }
 

@@ -85,7 +85,7 @@ TEMPLATE_LIST_TEST_CASE("wide bases: partition of unity, linear fields, gradient
     const auto x = random_point(inner, random);
     REQUIRE(basis.contains(x));
     const auto shape = basis.shape(x);
-    double one = 0, zero[Dim] = {}, place[Dim] = {}, identity[Dim][Dim] = {};
+    double one = 0, zero[Dim] = {}, position[Dim] = {}, identity[Dim][Dim] = {};
     std::set<int> nodes;
     for (int a = 0; a < basis.support; ++a) {
       REQUIRE((shape.node[a] >= 0 && shape.node[a] < basis.node_count()));
@@ -95,7 +95,7 @@ TEMPLATE_LIST_TEST_CASE("wide bases: partition of unity, linear fields, gradient
       one += shape.N[a];
       for (int i = 0; i < Dim; ++i) {
         zero[i] += shape.dN[a][i];
-        place[i] += shape.N[a] * xa[i];
+        position[i] += shape.N[a] * xa[i];
         for (int j = 0; j < Dim; ++j) identity[j][i] += shape.dN[a][i] * xa[j];
       }
     }
@@ -103,7 +103,7 @@ TEMPLATE_LIST_TEST_CASE("wide bases: partition of unity, linear fields, gradient
     CHECK_THAT(one, WithinAbs(1, 1e-14));
     for (int i = 0; i < Dim; ++i) {
       CHECK_THAT(zero[i], WithinAbs(0, 1e-13));
-      CHECK_THAT(place[i], WithinAbs(x[i], 1e-13));
+      CHECK_THAT(position[i], WithinAbs(x[i], 1e-13));
       for (int j = 0; j < Dim; ++j) CHECK_THAT(identity[i][j], WithinAbs(i == j, 1e-12));
     }
 

@@ -86,15 +86,15 @@ std::set<int> outside_after(const UniformGrid<Dim, double>& grid, const std::set
                             const std::set<int>& filled) {
   std::set<int> outside;
   std::queue<int> next;
-  const auto reach = [&](int cell) {
+  const auto visit = [&](int cell) {
     if (filled.count(cell) == 0 && outside.insert(cell).second) next.push(cell);
   };
   for (const int cell : before) {
-    reach(cell);
-    for (const int neighbour : face_neighbours(grid, cell)) reach(neighbour);
+    visit(cell);
+    for (const int neighbour : face_neighbours(grid, cell)) visit(neighbour);
   }
   for (; !next.empty(); next.pop())
-    for (const int neighbour : face_neighbours(grid, next.front())) reach(neighbour);
+    for (const int neighbour : face_neighbours(grid, next.front())) visit(neighbour);
   return outside;
 }
 

@@ -44,21 +44,21 @@ void check_carried() {
   CHECK(body.moved > 0);
   body.check_boundary();
 
-  // Written out: bit 2 is at the nodes of N1 around which, within the reach of the basis, a carrier is.
+  // Written out: bit 2 is at the nodes of N1 around which, within the support of the basis, a carrier is.
   std::set<int> near;
   const auto p = read(body.block);
-  const int reach = BasisOf<Dim, Real>::reach;
+  const int ghost_layers = BasisOf<Dim, Real>::ghost_layers;
   const auto& nodes = body.basis.grid;
   for (int k = 0; k < n; ++k) {
     if (!carries[static_cast<size_t>(k)]) continue;
     const auto cell = cell_of(p, k);
-    const int width = 2 + 2 * reach, around = Dim == 1   ? width
-                                              : Dim == 2 ? width * width
-                                                         : width * width * width;
+    const int width = 2 + 2 * ghost_layers, around = Dim == 1   ? width
+                                                     : Dim == 2 ? width * width
+                                                                : width * width * width;
     for (int a = 0; a < around; ++a) {
       auto ijk = cell;
       for (int i = 0, digits = a; i < Dim; ++i, digits /= width)
-        ijk[i] += digits % width;  // less reach, and
+        ijk[i] += digits % width;  // less ghost_layers, and
                                    // the ghost layer
       near.insert(nodes.node_index(ijk));
     }

@@ -51,7 +51,7 @@ TEMPLATE_TEST_CASE_SIG("affine fields, by the volume's second moments", "",
           if (const int k = (ijk[i] + i) / 2 % 4; k < 3) mask |= 1u << k;
         return mask;
       });
-      engines.conservative = 2;
+      engines.at_all_active_nodes = 2;
     } else {
       engines.declare_everywhere(7);
     }
@@ -126,7 +126,7 @@ TEMPLATE_TEST_CASE_SIG("a rigid body force that balances a field", "", ((int Dim
   BothEngines<Dim, double> engines({true, 0});
   auto f = four_fields<Dim, double>(engines.basis.grid, 1);
   f.balanced = 5;
-  f.balance.about = place_in<Dim, double>(engines.basis.grid, 8);
+  f.balance.about = position_in<Dim, double>(engines.basis.grid, 8);
   for (int i = 0; i < Dim; ++i) f.balance.constant[i] = 0.3 * (i + 1);
   f.balance.spin(0, 1) = 0.2;
   f.balance.spin(1, 0) = -0.2;
@@ -141,7 +141,7 @@ TEMPLATE_TEST_CASE_SIG("a function of one's own, singular where there is no part
   // At the centre of the cavity, which is the centre of a void cell of a group.
   BothEngines<Dim, Real> engines({true, 0});
   engines.declare_everywhere(1);
-  const Singular<Dim, Real> singular{place_in<Dim, Real>(engines.basis.grid, Real(6.5)), Real(0.05)};
+  const Singular<Dim, Real> singular{position_in<Dim, Real>(engines.basis.grid, Real(6.5)), Real(0.05)};
   engines.run(elastic<Dim, Real>(), DeterminantVolume{}, [&](int) { return virtual_stress_of(singular); });
   CAPTURE(engines.moved);
   check_same(engines);

@@ -138,8 +138,8 @@ std::uint64_t state_hash() {
 TEMPLATE_TEST_CASE_SIG("boundary particles, material points and nodes under tractions", "",
                        ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (3, double),
                        (2, float), (3, float)) {
-  for (const bool cubic : {false, true}) {
-    BothEngines<Dim, Real> engines({cubic, sizeof(Real) == 4 ? 0. : 5.});
+  for (const bool equal_spacing : {false, true}) {
+    BothEngines<Dim, Real> engines({equal_spacing, sizeof(Real) == 4 ? 0. : 5.});
     engines.surface = points_of_all_kinds(engines, 100);
     const auto cells_before = read(pack_surface_points(Exec(), engines.surface, engines.basis.grid).cell);
     const auto field_at = [&](int n) {
@@ -150,7 +150,7 @@ TEMPLATE_TEST_CASE_SIG("boundary particles, material points and nodes under trac
         [&](int n) { return OnSurfacePoints<TractionFields<Dim, Real>>{field_at(n)}; },
         [](int) { return NoVirtualStress{}; },
         [&](int n) { return add_lane_loads(Exec(), engines.lanes, field_at(n)); });
-    CAPTURE(cubic, engines.moved);
+    CAPTURE(equal_spacing, engines.moved);
     check_same(engines);
     // The points themselves: where they are and how large; material points are where their particles are.
     const auto theirs = read(engines.state.surface.position), their_area = read(engines.state.surface.area);
@@ -178,7 +178,7 @@ TEMPLATE_TEST_CASE_SIG("boundary particles, material points and nodes under trac
       changed += moved;
     }
     // A boundary particle in a void cell feels in full the velocity of nodes with little mass, to which the
-    // place of a particle beside a face is rounded in the grid.
+    // position of a particle beside a face is rounded in the grid.
     CHECK(off < 10 * engine_tolerance<Real>);
     CHECK(area_off < engine_tolerance<Real>);
     CHECK(from_particle < engine_tolerance<Real>);

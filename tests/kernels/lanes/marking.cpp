@@ -46,7 +46,7 @@ int check_marks(const LaneState<Dim, Real, Device>& s, const std::vector<bool>& 
     if (n1.count(node))
       expected[I] = declared[I];
     else if (active.count(node))
-      expected[I] = declared[I] & s.boundary.conservative;
+      expected[I] = declared[I] & s.boundary.at_all_active_nodes;
     wrong += mine[I] != expected[I];
     loaded += expected[I] != 0;
   }
@@ -102,7 +102,7 @@ int pack_and_check(const UniformGrid<Dim, Real>& grid, const std::vector<bool>& 
   std::vector<TractionMask> declared(static_cast<size_t>(grid.node_count()), 8);
   s.boundary.everywhere = 8;
   if (masks > 1) {
-    s.boundary.conservative = 2;
+    s.boundary.at_all_active_nodes = 2;
     const BoundaryNodes<Device> on_nodes("vsb::declared", declared.size());
     s.boundary.declared = on_nodes;
     edit(on_nodes, [&](const auto& host) {

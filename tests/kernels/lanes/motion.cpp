@@ -39,7 +39,7 @@ bool all_there(const CellLanes<Dim, Real, Device>& lanes) {
 
 /// A block of 5 x 5 x 5 cells without stress, which moves by `step` cells a step.
 template <int Dim, class Real, template <int, class, class> class StateOf = LaneState>
-struct FlyingBlock {
+struct TranslatingBlock {
   UniformGrid<Dim, Real> grid;
   ParticleBlock<Dim, Real, Device> block, after;
   StateOf<Dim, Real, Device> s;
@@ -47,7 +47,7 @@ struct FlyingBlock {
   LinearElastic<Real> material = LinearElastic<Real>::from_young(0.01, 0.3);
   int lost = -1;
 
-  FlyingBlock(const Vector<3, double>& step, int cells, int from) {
+  TranslatingBlock(const Vector<3, double>& step, int cells, int from) {
     grid = make_grid<Dim, Real>({{cells, cells, cells}});
     block = fill_cells<Dim, Real>(grid, 2, Real(1), [&](const Vector<Dim, int>& cell) {
       for (int i = 0; i < Dim; ++i)
@@ -79,22 +79,23 @@ struct FlyingBlock {
   }
 };
 
-/// After so many steps of a flight every particle is where it must be, with its mass.
+/// After so many steps of a translation every particle is where it must be, with its mass.
 template <int Dim, class Real, template <int, class, class> class StateOf>
-void check_arrival(const FlyingBlock<Dim, Real, StateOf>& flight, const Vector<3, double>& step, int steps) {
-  const auto before = read(flight.block), after = read(flight.after);
+void check_arrival(const TranslatingBlock<Dim, Real, StateOf>& translation, const Vector<3, double>& step,
+                   int steps) {
+  const auto before = read(translation.block), after = read(translation.after);
   int wrong = 0;
   double error = 0;
   for (int k = 0; k < before.count(); ++k) {
     wrong += after.mass(k) != before.mass(k);
     for (int i = 0; i < Dim; ++i)
       error = std::max(error, std::abs(static_cast<double>((after.position(k, i) - before.position(k, i)) /
-                                                           flight.grid.spacing[i]) -
+                                                           translation.grid.spacing[i]) -
                                        steps * step[i]));
   }
   CHECK(wrong == 0);
-  // A place in a cell, below 1, is rounded once a step, and a position in the grid once.
-  CHECK(error < (steps + 4 * flight.grid.cells[0]) * epsilon<Real>);
+  // A position in a cell, below 1, is rounded once a step, and a position in the grid once.
+  CHECK(error < (steps + 4 * translation.grid.cells[0]) * epsilon<Real>);
 }
 
 template <int Dim, class Real>
@@ -113,22 +114,22 @@ void check_lost_particles() {
     for (int i = 0; i < Dim; ++i) {
       Vector<3, double> step{{0, 0, 0}};
       step[i] = 0.1 * side;
-      FlyingBlock<Dim, double, StateOf> flight(step, 13, 4);  // 4 cells to each face
+      TranslatingBlock<Dim, double, StateOf> translation(step, 13, 4);  // 4 cells to each face
       // When the first ones are outside, and which.
-      const auto p = read(flight.block);
+      const auto p = read(translation.block);
       int first = -1, steps = 0;
       while (first < 0) {
         ++steps;
         for (int k = 0; k < p.count() && first < 0; ++k) {
-          const double place =
-              (p.position(k, i) - flight.grid.lower[i]) / flight.grid.spacing[i] + steps * step[i];
-          if (place < 0 || place > 13) first = k;
+          const double coordinate =
+              (p.position(k, i) - translation.grid.lower[i]) / translation.grid.spacing[i] + steps * step[i];
+          if (coordinate < 0 || coordinate > 13) first = k;
         }
       }
       CAPTURE(side, i, steps);
-      CHECK(flight.advance(steps - 1));
-      CHECK(!flight.advance(1));
-      CHECK(flight.lost == first);
+      CHECK(translation.advance(steps - 1));
+      CHECK(!translation.advance(1));
+      CHECK(translation.lost == first);
     }
 }
 
@@ -142,45 +143,45 @@ TEMPLATE_TEST_CASE_SIG("a block flies a hundred cells in a thousand steps", "",
        {Vector<3, double>{{0.1, 0, 0}},
         Vector<3, double>{{Dim == 1 ? 0.1 : 0, Dim == 2 ? -0.1 : 0, Dim == 3 ? -0.1 : 0}},
         Vector<3, double>{{0.1, -0.07, 0.09}}, Vector<3, double>{{-0.1, 0.1, -0.083}}}) {
-    FlyingBlock<Dim, Real> flight(step, 240, 115);
+    TranslatingBlock<Dim, Real> translation(step, 240, 115);
     CAPTURE(step[0], step[1], step[2]);
-    const int slots = flight.s.memory.lanes.slot_count, nodes = flight.s.memory.lanes.node_count;
+    const int slots = translation.s.memory.lanes.slot_count, nodes = translation.s.memory.lanes.node_count;
     const int stages = 10;
     for (int stage = 0; stage < stages; ++stage) {
-      REQUIRE(flight.advance(1000 / stages));
-      CHECK(all_there<Dim, Real>(flight.s.memory.lanes));
+      REQUIRE(translation.advance(1000 / stages));
+      CHECK(all_there<Dim, Real>(translation.s.memory.lanes));
       // The block of 5 cells touches 6 in every direction, and cells beside it are held in reserve: 8 of 5,
-      // with 9 of 6 nodes; along x, 4 groups of 1 or 2, with 5 of 2 or 3 chunks of nodes. Slots fill up to
+      // with 9 of 6 nodes; along x, 4 groups of 1 or 2, with 5 of 2 or 3 node groups. Slots fill up to
       // twice the particles of a cell where a lattice is jittered.
       double more_cells = 4, more_nodes = 2.5;
       for (int i = 1; i < Dim; ++i) {
         more_cells *= 8. / 5;
         more_nodes *= 9. / 6;
       }
-      CHECK(flight.s.memory.lanes.slot_count <= 2 * more_cells * slots);
-      CHECK(flight.s.memory.lanes.node_count <= more_nodes * nodes);
+      CHECK(translation.s.memory.lanes.slot_count <= 2 * more_cells * slots);
+      CHECK(translation.s.memory.lanes.node_count <= more_nodes * nodes);
     }
-    CHECK(flight.s.repacked > 5);
-    check_arrival(flight, step, 1000);
+    CHECK(translation.s.repacked > 5);
+    check_arrival(translation, step, 1000);
   }
 }
 
 TEMPLATE_TEST_CASE_SIG("a block that shakes as it flies keeps its momentum", "",
                        ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (3, double),
                        (3, float)) {
-  FlyingBlock<Dim, Real> flight({{0.1, -0.07, 0.05}}, 240, 115);
-  flight.material = LinearElastic<Real>::from_young(10, 0.3);
+  TranslatingBlock<Dim, Real> translation({{0.1, -0.07, 0.05}}, 240, 115);
+  translation.material = LinearElastic<Real>::from_young(10, 0.3);
   Random random(89);
-  edit(flight.block, [&](const auto& p) {
+  edit(translation.block, [&](const auto& p) {
     for (int k = 0; k < p.count(); ++k)
       for (int i = 0; i < Dim; ++i) p.velocity(k, i) += random.draw<Real>(-0.2, 0.2);
   });
-  Kokkos::deep_copy(flight.after.block, flight.block.block);
-  REQUIRE(pack_lanes(Exec(), flight.after.particles, flight.s) == -1);
-  prepare_lane_step(Exec(), flight.s, NoVirtualStress{});
-  REQUIRE(flight.advance(1000));
-  CHECK(all_there<Dim, Real>(flight.s.memory.lanes));
-  const auto before = read(flight.block), after = read(flight.after);
+  Kokkos::deep_copy(translation.after.block, translation.block.block);
+  REQUIRE(pack_lanes(Exec(), translation.after.particles, translation.s) == -1);
+  prepare_lane_step(Exec(), translation.s, NoVirtualStress{});
+  REQUIRE(translation.advance(1000));
+  CHECK(all_there<Dim, Real>(translation.s.memory.lanes));
+  const auto before = read(translation.block), after = read(translation.after);
   double mass = 0, stress = 0;
   int wrong = 0;
   for (int k = 0; k < before.count(); ++k) {
@@ -192,24 +193,25 @@ TEMPLATE_TEST_CASE_SIG("a block that shakes as it flies keeps its momentum", "",
   CHECK(stress > 0.01);  // it does shake
   CHECK(stress < 10);
   for (int i = 0; i < Dim; ++i) {
-    const double p0 = momentum(flight.block, i), speed = std::abs(p0) / mass;
+    const double p0 = momentum(translation.block, i), speed = std::abs(p0) / mass;
     // Every velocity is rounded once a step, in any direction.
-    CHECK_THAT(momentum(flight.after, i), WithinAbs(p0, std::sqrt(1000.) * epsilon<Real> * mass * speed));
+    CHECK_THAT(momentum(translation.after, i),
+               WithinAbs(p0, std::sqrt(1000.) * epsilon<Real> * mass * speed));
   }
 }
 
 TEMPLATE_TEST_CASE_SIG("particles may cross several cells in a step", "", ((int Dim), Dim), 1, 2, 3) {
-  FlyingBlock<Dim, double> flight({{2.3, 3.7, -5.1}}, 120, 60);
-  REQUIRE(flight.advance(10));
-  CHECK(all_there<Dim, double>(flight.s.memory.lanes));
-  const auto before = read(flight.block), after = read(flight.after);
+  TranslatingBlock<Dim, double> translation({{2.3, 3.7, -5.1}}, 120, 60);
+  REQUIRE(translation.advance(10));
+  CHECK(all_there<Dim, double>(translation.s.memory.lanes));
+  const auto before = read(translation.block), after = read(translation.after);
   const double step[] = {2.3, 3.7, -5.1};
   double error = 0;
   for (int k = 0; k < before.count(); ++k)
     for (int i = 0; i < Dim; ++i)
-      error = std::max(
-          error,
-          std::abs((after.position(k, i) - before.position(k, i)) / flight.grid.spacing[i] - 10 * step[i]));
+      error = std::max(error,
+                       std::abs((after.position(k, i) - before.position(k, i)) / translation.grid.spacing[i] -
+                                10 * step[i]));
   CHECK(error < 1e-11);
 }
 
@@ -223,14 +225,14 @@ TEMPLATE_TEST_CASE_SIG("splines: a block flies thirty cells", "", ((int Dim, typ
                        (1, double), (2, double), (3, double), (3, float)) {
   for (const Vector<3, double>& step :
        {Vector<3, double>{{0.1, -0.07, 0.09}}, Vector<3, double>{{-0.1, 0.1, -0.083}}}) {
-    FlyingBlock<Dim, Real, SplineLaneState> flight(step, 90, 42);
+    TranslatingBlock<Dim, Real, SplineLaneState> translation(step, 90, 42);
     CAPTURE(step[0], step[1], step[2]);
     for (int stage = 0; stage < 3; ++stage) {
-      REQUIRE(flight.advance(100));
-      CHECK(all_there<Dim, Real>(flight.s.memory.lanes));
+      REQUIRE(translation.advance(100));
+      CHECK(all_there<Dim, Real>(translation.s.memory.lanes));
     }
-    CHECK(flight.s.repacked > 0);
-    check_arrival(flight, step, 300);
+    CHECK(translation.s.repacked > 0);
+    check_arrival(translation, step, 300);
   }
 }
 
@@ -240,13 +242,13 @@ TEMPLATE_TEST_CASE_SIG("velocities that are not numbers lose particles, and noth
   for (const Real bad : {std::numeric_limits<Real>::quiet_NaN(), std::numeric_limits<Real>::infinity(),
                          std::numeric_limits<Real>::max()})
     for (int i = 0; i < Dim; ++i) {
-      FlyingBlock<Dim, Real> flight({{0.01, 0, 0}}, 13, 4);
-      edit(flight.after, [&](const auto& p) { p.velocity(7, i) = bad; });
-      REQUIRE(pack_lanes(Exec(), flight.after.particles, flight.s) == -1);
-      prepare_lane_step(Exec(), flight.s, NoVirtualStress{});
+      TranslatingBlock<Dim, Real> translation({{0.01, 0, 0}}, 13, 4);
+      edit(translation.after, [&](const auto& p) { p.velocity(7, i) = bad; });
+      REQUIRE(pack_lanes(Exec(), translation.after.particles, translation.s) == -1);
+      prepare_lane_step(Exec(), translation.s, NoVirtualStress{});
       CAPTURE(bad, i);
-      const int lost = lane_step(Exec(), flight.s, flight.material, DeterminantVolume{}, NoVirtualStress{},
-                                 flight.options);
+      const int lost = lane_step(Exec(), translation.s, translation.material, DeterminantVolume{},
+                                 NoVirtualStress{}, translation.options);
       CHECK((lost >= 0 && lost <= 7));
     }
 }
@@ -265,8 +267,8 @@ TEMPLATE_TEST_CASE_SIG("rounding strains a particle before a face by epsilon ove
     edit(block, [&](const auto& p) {
       for (int k = 0; k < n; ++k) {
         for (int i = 0; i < Dim; ++i) {
-          const double place = k == 0 ? 4 - delta : 4.25 + 0.5 * ((k - 1) >> i & 1);
-          p.position(k, i) = grid.lower[i] + grid.spacing[i] * static_cast<Real>(place);
+          const double coordinate = k == 0 ? 4 - delta : 4.25 + 0.5 * ((k - 1) >> i & 1);
+          p.position(k, i) = grid.lower[i] + grid.spacing[i] * static_cast<Real>(coordinate);
           p.velocity(k, i) = -static_cast<Real>(step) * grid.spacing[i];
         }
         p.mass(k) = p.volume(k) = grid.cell_volume() / Real(1 << Dim);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Particles packed by cell: every one in its place and back again, in memory that follows the body.
+/// Particles packed by cell: every one in its entry and back again, in memory that follows the body.
 #include <vsb/kernels/lanes/build.hpp>
 
 #include "support.hpp"
@@ -21,7 +21,7 @@ struct Packed {
     memory.grid = grid;
     lost = pack_particles(Exec(), block.particles, memory);
   }
-  /// Every particle is in one entry, and in that of the cell and place where it is; ghosts weigh nothing.
+  /// Every particle is in one entry, and in that of the cell and xi where it is; ghosts weigh nothing.
   void check() const {
     REQUIRE(lost == -1);
     const auto& lanes = memory.lanes;
@@ -131,8 +131,8 @@ TEMPLATE_TEST_CASE_SIG("particles that are handed over are packed where they are
     for (int k = 0; k < n; ++k)
       for (int c = 0; c < state_size; ++c) p.material_state(k, c) = static_cast<Real>(100 * k + c);
   });
-  LaneMemory<Dim, Real, Device> kept, with_room, without_room;
-  for (auto* m : {&kept, &with_room, &without_room}) {
+  LaneMemory<Dim, Real, Device> kept, reserved_rows, without_capacity;
+  for (auto* m : {&kept, &reserved_rows, &without_capacity}) {
     m->grid = grid;
     m->lanes.state_size = state_size;
   }
@@ -147,26 +147,26 @@ TEMPLATE_TEST_CASE_SIG("particles that are handed over are packed where they are
     Kokkos::deep_copy(copy.state_block, source.state_block);
     return copy;
   };
-  auto roomy = copy_of_source(allocate_particles_to_pack<Dim, Real, Device>(n, state_size));
+  auto large = copy_of_source(allocate_particles_to_pack<Dim, Real, Device>(n, state_size));
   auto narrow = copy_of_source(allocate_particles<Dim, Real, Device>(n));
-  const Real* const memory = roomy.block.data();
+  const Real* const memory = large.block.data();
 
   // Nothing happens to particles of which one is outside.
   auto lost = copy_of_source(allocate_particles_to_pack<Dim, Real, Device>(n, state_size));
   edit(lost, [](const auto& p) { p.position(11, 0) = Real(1e6); });
-  CHECK(pack_particles(Exec(), std::move(lost), with_room) == 11);
+  CHECK(pack_particles(Exec(), std::move(lost), reserved_rows) == 11);
   CHECK(lost.particles.count() == n);
   CHECK(read(lost).velocity(5, 0) == read(source).velocity(5, 0));
 
-  REQUIRE(pack_particles(Exec(), std::move(roomy), with_room) == -1);
-  REQUIRE(pack_particles(Exec(), std::move(narrow), without_room) == -1);
-  CHECK(roomy.particles.count() == 0);
+  REQUIRE(pack_particles(Exec(), std::move(large), reserved_rows) == -1);
+  REQUIRE(pack_particles(Exec(), std::move(narrow), without_capacity) == -1);
+  CHECK(large.particles.count() == 0);
   CHECK(narrow.particles.count() == 0);
   const auto slots = static_cast<size_t>(kept.lanes.slot_count) * kept.lanes.width;
-  CHECK(with_room.lanes.data.data() == memory);
+  CHECK(reserved_rows.lanes.data.data() == memory);
   const auto expected = read(kept.lanes.data);
   const auto id = read(kept.lanes.id);
-  for (const auto* m : {&with_room, &without_room}) {
+  for (const auto* m : {&reserved_rows, &without_capacity}) {
     const auto data = read(m->lanes.data);
     const auto who = read(m->lanes.id);
     REQUIRE(m->lanes.slot_count == kept.lanes.slot_count);
@@ -228,7 +228,7 @@ TEMPLATE_TEST_CASE_SIG("memory follows the body and not the grid", "", ((int Dim
   int cells = 1;
   for (int i = 0; i < Dim; ++i) cells *= 12;
   // Groups of whole rows, up to the next whole group; as many particles as slots but for the slack of one;
-  // and one chunk of nodes more than groups per row.
+  // and one node group more than groups per row.
   const int width = close.memory.lanes.width, groups_per_row = (12 + width - 1) / width, rows = cells / 12;
   CHECK(close.memory.lanes.group_count == groups_per_row * rows);
   CHECK(close.memory.lanes.slot_count == groups_per_row * rows * ((1 << Dim) + close.memory.slack));

@@ -19,7 +19,7 @@ template <int Dim, class Real>
 struct MovedBody : BothEngines<Dim, Real> {
   UniformVirtualStress<Dim, Real> field;
 
-  explicit MovedBody(Sweeps sweeps = Sweeps::chosen)
+  explicit MovedBody(RemapMethod remap_method = RemapMethod::chosen)
       : BothEngines<Dim, Real>({false, sizeof(Real) == 4 ? 0. : 1., true}) {
     this->remember(symmetric_components(Dim));
     Random random(7);
@@ -28,7 +28,7 @@ struct MovedBody : BothEngines<Dim, Real> {
         for (int c = 0; c < p.stress_size; ++c) p.material_state(k, c) = random.draw<Real>(-1, 1);
     });
     auto& memory = this->lanes.memory;
-    memory.sweeps = sweeps;
+    memory.remap_method = remap_method;
     for (int i = 0; i < Dim; ++i)
       memory.walls.fixed[0][0] = static_cast<ComponentMask>(memory.walls.fixed[0][0] | 1 << i);
     this->options.gravity[Dim - 1] = this->amplitude * Real(-3);
@@ -57,8 +57,8 @@ struct MovedBody : BothEngines<Dim, Real> {
 TEMPLATE_TEST_CASE_SIG("the balance of lanes is that of their particles", "",
                        ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (2, float),
                        (3, double)) {
-  for (const auto sweeps : {Sweeps::one, Sweeps::two}) {
-    MovedBody<Dim, Real> body(sweeps);
+  for (const auto remap_method : {RemapMethod::mass_matrix, RemapMethod::second_sweep}) {
+    MovedBody<Dim, Real> body(remap_method);
     auto& memory = body.lanes.memory;
     const auto sums = read(memory.nodes.data);
     const auto sums_before = std::vector<Real>(sums.data(), sums.data() + sums.span());
@@ -87,7 +87,7 @@ TEMPLATE_TEST_CASE_SIG("the balance of lanes is that of their particles", "",
     const auto after = read(memory.nodes.data), matrices_after = read(memory.lanes.mass_matrices);
     CHECK(std::equal(sums_before.begin(), sums_before.end(), after.data()));
     CHECK(std::equal(matrices_before.begin(), matrices_before.end(), matrices_after.data()));
-    CHECK(matrices_before.empty() == (sweeps == Sweeps::two));
+    CHECK(matrices_before.empty() == (remap_method == RemapMethod::second_sweep));
   }
 }
 
@@ -96,8 +96,8 @@ TEMPLATE_TEST_CASE_SIG("the first spoilt particle in lanes, and its field", "",
   MovedBody<Dim, Real> body;
   auto& memory = body.lanes.memory;
   const auto& lanes = memory.lanes;
-  const auto places = find_places(Exec(), lanes);
-  const auto entry = read(places.entry);
+  const auto index = index_lanes(Exec(), lanes);
+  const auto entry = read(index.entry);
   const auto found = [&](int particle, ParticleField field) {
     const auto invalid = find_invalid(Exec(), memory);
     CHECK(invalid.particle == particle);
@@ -139,7 +139,7 @@ TEMPLATE_TEST_CASE_SIG("single fields of particles in lanes, by number", "",
   MovedBody<Dim, Real> body;
   const auto& memory = body.lanes.memory;
   const auto& lanes = memory.lanes;
-  const auto places = find_places(Exec(), lanes);
+  const auto index = index_lanes(Exec(), lanes);
   const auto expected = read(body.copy);
   const int n = expected.count(), first = n / 3, count = n / 2;  // some in the middle
   using Rows = Kokkos::View<double**, Kokkos::LayoutRight, Device>;
@@ -150,14 +150,14 @@ TEMPLATE_TEST_CASE_SIG("single fields of particles in lanes, by number", "",
   };
   int wrong = 0;
   const auto positions = rows_of(Dim, [&](const Rows& rows) {
-    return kernel::ReadLanePositions<Dim, Real, Device>{lanes, places, memory.grid, first, rows};
+    return kernel::ReadLanePositions<Dim, Real, Device>{lanes, index, memory.grid, first, rows};
   });
   const auto stresses = rows_of(lanes.stress_size, [&](const Rows& rows) {
     return kernel::ReadLaneColumns<Dim, Real, Device>{
-        lanes, places, first, lanes.stress_column, lanes.stress_size, rows};
+        lanes, index, first, lanes.stress_column, lanes.stress_size, rows};
   });
   const auto volumes = rows_of(1, [&](const Rows& rows) {
-    return kernel::ReadLaneColumns<Dim, Real, Device>{lanes, places, first, lanes.volume_column, 1, rows};
+    return kernel::ReadLaneColumns<Dim, Real, Device>{lanes, index, first, lanes.volume_column, 1, rows};
   });
   for (int r = 0; r < count; ++r) {
     for (int i = 0; i < Dim; ++i)
@@ -173,13 +173,13 @@ TEMPLATE_TEST_CASE_SIG("single fields of particles in lanes, by number", "",
                        kernel::LanePlasticStrain<Dim, Real, Device>{lanes, strain});
   const auto measure = read(strain);
   const auto points = unpack_mass_points(Exec(), memory);
-  const auto place = read(points.position), mass = read(points.mass);
+  const auto position = read(points.position), mass = read(points.mass);
   REQUIRE(points.count() == n);
   for (int p = 0; p < n; ++p) {
     SymmetricTensor<Dim, Real> plastic;
     for (int c = 0; c < plastic.size; ++c) plastic[c] = expected.material_state(p, c);
     wrong += measure(p) != equivalent_plastic_deviatoric_strain(plastic);
-    for (int i = 0; i < Dim; ++i) wrong += place(p, i) != expected.position(p, i);
+    for (int i = 0; i < Dim; ++i) wrong += position(p, i) != expected.position(p, i);
     wrong += mass(p) != expected.mass(p);
   }
   CHECK(wrong == 0);
@@ -190,7 +190,7 @@ TEMPLATE_TEST_CASE_SIG("single fields of particles in lanes, by number", "",
       by_particles("vsb::flags", static_cast<size_t>(n));
   Kokkos::parallel_for(
       "vsb::test", Kokkos::RangePolicy<Exec>(Exec(), 0, count),
-      kernel::FlagLaneParticle<Dim, Real, Device>{lanes, places, body.lanes.boundary.tractions, first, flag});
+      kernel::FlagLaneParticle<Dim, Real, Device>{lanes, index, body.lanes.boundary.tractions, first, flag});
   const auto state = body.unpacked();
   flag_boundary_particles(Exec(), state.particles, state.occupancy.boundary, body.basis, by_particles);
   const auto mine = read(flag), theirs = read(by_particles);

@@ -14,13 +14,13 @@ namespace {
 template <int Dim, class Real>
 using Engines = BothEngines<Dim, Real, QuadraticBSplineBasis>;
 
-/// The bits of 60 steps of a moving body under tractions that change from node to node, held by a wall.
+/// The bits of 60 steps of a moving body under tractions that change from node to node, fixed to a wall.
 template <int Dim, class Real>
 std::uint64_t state_hash() {
   Engines<Dim, Real> engines({false, 0, true}, 5);
   engines.lanes.memory.walls.fixed[0][0] = 1;
   engines.declare([](const Vector<Dim, int>& ijk) { return striped<Dim>(ijk); });
-  engines.conservative = 2;
+  engines.at_all_active_nodes = 2;
   engines.options.damping = Real(0.05);
   engines.run(
       elastic<Dim, Real>(), DeterminantVolume{},
@@ -47,13 +47,13 @@ TEMPLATE_TEST_CASE_SIG("splines: bodies under a pressure and under any uniform t
     check_uniform_stress<Dim, Real, Engines<Dim, Real>>(pressure, pressure);
 }
 
-TEMPLATE_TEST_CASE_SIG("splines: tractions that change from node to node, some conservative", "",
+TEMPLATE_TEST_CASE_SIG("splines: tractions that change from node to node, some at all active nodes", "",
                        ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (3, double),
                        (2, float), (3, float)) {
   check_mixed_tractions<Dim, Real, Engines<Dim, Real>>();
 }
 
-TEMPLATE_TEST_CASE_SIG("splines: a body that slides along a wall and one held by it", "",
+TEMPLATE_TEST_CASE_SIG("splines: a body that slides along a wall and one fixed to it", "",
                        ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (3, double),
                        (2, float), (3, float)) {
   check_body_at_a_wall<Dim, Real, Engines<Dim, Real>>();

@@ -13,11 +13,11 @@ namespace {
 
 /// The bits of 60 steps of a moving body under tractions that change from node to node.
 template <int Dim, class Real>
-std::uint64_t state_hash(Sweeps sweeps) {
+std::uint64_t state_hash(RemapMethod remap_method) {
   BothEngines<Dim, Real> engines({false, 5});
-  engines.lanes.memory.sweeps = sweeps;
+  engines.lanes.memory.remap_method = remap_method;
   engines.declare([](const Vector<Dim, int>& ijk) { return static_cast<TractionMask>(ijk[0] / 3 % 4); });
-  engines.conservative = 2;
+  engines.at_all_active_nodes = 2;
   engines.options.damping = Real(0.05);
   UniformVirtualStress<Dim, Real> f;
   f.count = 2;
@@ -45,27 +45,28 @@ TEMPLATE_TEST_CASE_SIG("particles next to the faces of their cells", "",
 TEMPLATE_TEST_CASE_SIG("bodies under a pressure and under any uniform tensor", "",
                        ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (3, double),
                        (1, float), (2, float), (3, float)) {
-  for (const bool cubic : {true, false})
+  for (const bool equal_spacing : {true, false})
     for (const bool pressure : {true, false})
-      check_uniform_stress<Dim, Real, BothEngines<Dim, Real>>(cubic, pressure);
+      check_uniform_stress<Dim, Real, BothEngines<Dim, Real>>(equal_spacing, pressure);
 }
 
-TEMPLATE_TEST_CASE_SIG("tractions that change from node to node, some conservative", "",
+TEMPLATE_TEST_CASE_SIG("tractions that change from node to node, some at all active nodes", "",
                        ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (3, double),
                        (3, float)) {
   check_mixed_tractions<Dim, Real, BothEngines<Dim, Real>>();
 }
 
-TEMPLATE_TEST_CASE_SIG("a body that slides along a wall and one held by it", "",
+TEMPLATE_TEST_CASE_SIG("a body that slides along a wall and one fixed to it", "",
                        ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (3, double),
                        (2, float)) {
   check_body_at_a_wall<Dim, Real, BothEngines<Dim, Real>>();
 }
 
 TEST_CASE("print state hashes of cell lanes", "[.][state_hashes]") {  // run by kernels/same_bits.py
-  const std::uint64_t hashes[] = {state_hash<1, double>(Sweeps::two), state_hash<2, double>(Sweeps::two),
-                                  state_hash<3, double>(Sweeps::two), state_hash<3, float>(Sweeps::two),
-                                  state_hash<2, double>(Sweeps::one), state_hash<3, float>(Sweeps::one)};
+  const std::uint64_t hashes[] = {
+      state_hash<1, double>(RemapMethod::second_sweep), state_hash<2, double>(RemapMethod::second_sweep),
+      state_hash<3, double>(RemapMethod::second_sweep), state_hash<3, float>(RemapMethod::second_sweep),
+      state_hash<2, double>(RemapMethod::mass_matrix),  state_hash<3, float>(RemapMethod::mass_matrix)};
   for (const std::uint64_t hash : hashes)
     std::printf("hash of lanes %016llx\n", static_cast<unsigned long long>(hash));
 }

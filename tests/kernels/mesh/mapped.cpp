@@ -13,10 +13,10 @@ using namespace vsb::test;
 
 namespace {
 
-/// The place of local coordinates in a cell of a mesh in host memory.
+/// The position of local coordinates in a cell of a mesh in host memory.
 template <int Dim>
-Vector<Dim, double> place_in(const MappedGrid<Dim, double>& grid, const Vector<Dim, int>& cell,
-                             const Vector<Dim, double>& xi) {
+Vector<Dim, double> position_in(const MappedGrid<Dim, double>& grid, const Vector<Dim, int>& cell,
+                                const Vector<Dim, double>& xi) {
   return grid.cell(cell).at(xi).x;
 }
 
@@ -35,7 +35,7 @@ ParticleBlock<Dim, double, Device> random_particles_in(const MappedGrid<Dim, dou
         cell[i] = random.index(grid.cells[i]);
         xi[i] = random(0.001, 0.999);
       }
-      const auto x = place_in(grid, cell, xi);
+      const auto x = position_in(grid, cell, xi);
       for (int i = 0; i < Dim; ++i) particles.position(p, i) = x[i];
     }
   });
@@ -105,14 +105,14 @@ TEMPLATE_TEST_CASE_SIG("Algorithm 1 on a distorted grid marks the nodes that it 
         x[i] = grid.lower[i] + (cell[i] + xi[i]) * grid.spacing[i];
       }
       straight.push_back(x);
-      distorted.push_back(place_in(on_host.grid, cell, xi));
+      distorted.push_back(position_in(on_host.grid, cell, xi));
     });
     const int n = static_cast<int>(straight.size());
-    const auto mark = [&](const auto& on, const std::vector<Vector<Dim, double>>& places) {
+    const auto mark = [&](const auto& on, const std::vector<Vector<Dim, double>>& positions) {
       const auto block = allocate_particles<Dim, double, Device>(n);
       edit(block, [&](const auto& particles) {
         for (int p = 0; p < n; ++p)
-          for (int i = 0; i < Dim; ++i) particles.position(p, i) = places[static_cast<size_t>(p)][i];
+          for (int i = 0; i < Dim; ++i) particles.position(p, i) = positions[static_cast<size_t>(p)][i];
       });
       auto occupancy = allocate_occupancy<Device>(n, on);
       Kokkos::deep_copy(occupancy.tractions, 5u);

@@ -58,20 +58,20 @@ struct Strained {
   }
 };
 
-/// The mean by its formula; functions by their places, in half cells from the lowest node of the grid, and
+/// The mean by its formula; functions by their positions, in half cells from the lowest node of the grid, and
 /// small ones with the largest around, of those as large the nearest.
 template <int Dim>
 std::vector<double> mean_by_formula(const UniformGrid<Dim, double>& grid, bool linear,
                                     const Particles<Dim, double, Kokkos::HostSpace>& particles,
                                     const std::vector<double>& theta) {
-  using Place = std::array<int, 3>;
+  using Centre = std::array<int, 3>;
   struct Sums {
     double volume = 0, divergence = 0;
   };
   const auto functions = [&](int p) {
-    std::map<Place, double> M;
+    std::map<Centre, double> M;
     for (int a = 0; a < 1 << Dim; ++a) {
-      Place place{};
+      Centre centre{};
       double weight = 1;
       for (int i = 0; i < Dim; ++i) {
         const double q = (particles.position(p, i) - grid.lower[i]) / grid.spacing[i];
@@ -79,24 +79,24 @@ std::vector<double> mean_by_formula(const UniformGrid<Dim, double>& grid, bool l
         const double xi = linear ? 0 : q - 0.5 - below;
         const int upper = a >> i & 1;
         weight *= upper ? xi : 1 - xi;
-        place[static_cast<size_t>(i)] = below + upper;
+        centre[static_cast<size_t>(i)] = below + upper;
       }
-      if (weight > 0) M[place] += weight;
+      if (weight > 0) M[centre] += weight;
     }
     return M;
   };
-  std::map<Place, Sums> sums;
+  std::map<Centre, Sums> sums;
   for (int p = 0; p < particles.count(); ++p)
-    for (const auto& [place, M] : functions(p)) {
-      sums[place].volume += M * particles.volume(p);
-      sums[place].divergence += M * particles.volume(p) * theta[static_cast<size_t>(p)];
+    for (const auto& [centre, M] : functions(p)) {
+      sums[centre].volume += M * particles.volume(p);
+      sums[centre].divergence += M * particles.volume(p) * theta[static_cast<size_t>(p)];
     }
   const double least = linear ? 0 : 0.1 * grid.cell_volume();
-  std::map<Place, Place> home;
-  for (const auto& [place, own] : sums) {
-    home[place] = place;
+  std::map<Centre, Centre> merged_into;
+  for (const auto& [centre, own] : sums) {
+    merged_into[centre] = centre;
     if (own.volume >= least) continue;
-    const auto axes = [&, &from = place](const Place& other) {
+    const auto axes = [&, &from = centre](const Centre& other) {
       int different = 0;
       for (size_t i = 0; i < 3; ++i) {
         if (std::abs(other[i] - from[i]) > 1) return 9;
@@ -114,19 +114,19 @@ std::vector<double> mean_by_formula(const UniformGrid<Dim, double>& grid, bool l
       const Rank rank{axes(other), other[2], other[1], other[0]};
       if (s.volume < least || s.volume < 0.95 * largest || rank[0] >= 9 || rank >= first) continue;
       first = rank;
-      home[place] = other;
+      merged_into[centre] = other;
     }
   }
-  std::map<Place, Sums> together;
-  for (const auto& [place, own] : sums) {
-    together[home[place]].volume += own.volume;
-    together[home[place]].divergence += own.divergence;
+  std::map<Centre, Sums> together;
+  for (const auto& [centre, own] : sums) {
+    together[merged_into[centre]].volume += own.volume;
+    together[merged_into[centre]].divergence += own.divergence;
   }
   std::vector<double> mean;
   for (int p = 0; p < particles.count(); ++p) {
     mean.push_back(0);
-    for (const auto& [place, M] : functions(p)) {
-      const auto& of = together[home[place]];
+    for (const auto& [centre, M] : functions(p)) {
+      const auto& of = together[merged_into[centre]];
       mean.back() += M * of.divergence / of.volume;
     }
   }
@@ -147,7 +147,7 @@ ParticleBlock<Dim, double, Device> slivers(const UniformGrid<Dim, double>& grid,
 
 template <class Basis>
 void check_formula(const UniformGrid<Basis::dimension, double>& grid, const Basis& basis, unsigned seed) {
-  constexpr bool linear = Basis::reach == 0;
+  constexpr bool linear = Basis::ghost_layers == 0;
   Strained<Basis> strained(basis, slivers(grid, seed));
   Random random(seed + 2);
   for (int trial = 0; trial < 3; ++trial) {

@@ -218,8 +218,8 @@ TEST_CASE("UpdateStress") {
 TEST_CASE("LocateParticle") {
   const LinearBasis<1, double> basis{UniformGrid<1, double>({{0}}, {{1}}, {{10}})};
   const auto particles = allocate_particles<1, double, Host>(4).particles;
-  const double places[] = {3.5, 9.99, -0.5, 3.5};
-  for (int p = 0; p < 4; ++p) particles.position(p, 0) = places[p];
+  const double positions[] = {3.5, 9.99, -0.5, 3.5};
+  for (int p = 0; p < 4; ++p) particles.position(p, 0) = positions[p];
   const ParticleBins<Host>::Ints bin("vsb::bin", 4);
   Kokkos::deep_copy(bin, 3);
   const kernel::LocateParticle<LinearBasis<1, double>, Particles<1, double, Host>, Host> functor{particles,
@@ -249,7 +249,7 @@ TEST_CASE("the functors of the sort") {
   for (int b = 0; b < 4; ++b) kernel::ScanOffsets<Host>{bins}(b, sum, true);
   const int offset[] = {0, 0, 2, 2, 6};
   for (int b = 0; b < 5; ++b) CHECK(bins.offset(b) == offset[b]);
-  for (const int p : {5, 3, 2, 0, 1, 4}) kernel::PlaceInBin<Host>{bins}(p);  // as threads may come
+  for (const int p : {5, 3, 2, 0, 1, 4}) kernel::OrderByBin<Host>{bins}(p);  // as threads may come
   const int placed[] = {3, 1, 5, 2, 0, 4};
   for (int i = 0; i < 6; ++i) CHECK(bins.order(i) == placed[i]);
   sum = 0;

@@ -71,17 +71,17 @@ double force_on(const State<2, double, Device>& state) {
 
 TEST_CASE("particles with positions alone have their boundary marked") {
   const Block body;
-  Particles<2, double, Device> places;
-  places.position = body.particles.position;
-  CHECK(places.count() == 36);
+  Particles<2, double, Device> positions;
+  positions.position = body.particles.position;
+  CHECK(positions.count() == 36);
   const LinearBasis<2, double> basis{body.grid};
-  auto occupancy = allocate_occupancy<Device>(places.count(), basis);
+  auto occupancy = allocate_occupancy<Device>(positions.count(), basis);
   Kokkos::deep_copy(occupancy.tractions, 1u);
-  CHECK(update_occupancy(Exec(), places, occupancy, basis) == -1);
+  CHECK(update_occupancy(Exec(), positions, occupancy, basis) == -1);
   CHECK(occupancy.boundary_node_count == 16);
-  CHECK(mark_boundary_nodes(Exec(), places, occupancy.cells, basis, occupancy.tractions,
+  CHECK(mark_boundary_nodes(Exec(), positions, occupancy.cells, basis, occupancy.tractions,
                             occupancy.boundary) == 16);
-  CHECK_THROWS_WITH(make_state(places, basis), containing("velocity is 0 x 0, expected 36 x 2"));
+  CHECK_THROWS_WITH(make_state(positions, basis), containing("velocity is 0 x 0, expected 36 x 2"));
 }
 
 TEST_CASE("positions outside the grid are refused where nodes are marked") {
@@ -117,10 +117,10 @@ TEST_CASE("tractions declared between steps act in the next one") {
   edit(s.state.occupancy.tractions, [](const auto& host) { host(7) = 0; });  // a corner of the block
   REQUIRE(s.step() == -1);
   CHECK(s.state.occupancy.boundary_node_count == 15);
-  s.state.occupancy.conservative = 1;
+  s.state.occupancy.at_all_active_nodes = 1;
   REQUIRE(s.step() == -1);
   CHECK(s.state.occupancy.boundary_node_count == 15);  // the body has no other nodes
-  CHECK(s.state.occupancy.marked_conservative == 1);
+  CHECK(s.state.occupancy.marked_at_all_active_nodes == 1);
 }
 
 TEST_CASE("a step of the particle kernels names what is missing") {
@@ -267,7 +267,7 @@ TEMPLATE_TEST_CASE("a step on cell lanes names what is missing", "", (LaneState<
       {[](S& s) { s.lanes.memory.walls.fixed[1][0] = 2; }, "call unpack_particles before"},
       {[](S& s) { s.lanes.memory.grid.lower[0] = 0.1; }, "call unpack_particles before"},
       {[](S& s) { s.lanes.boundary.everywhere = 3; }, "call prepare_lane_step again"},
-      {[](S& s) { s.lanes.boundary.conservative = 1; }, "call prepare_lane_step again"},
+      {[](S& s) { s.lanes.boundary.at_all_active_nodes = 1; }, "call prepare_lane_step again"},
       {[](S& s) { s.lanes.boundary.declared = BoundaryNodes<Device>("vsb::declared", 36); },
        "call prepare_lane_step again"},
   };

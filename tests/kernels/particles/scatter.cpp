@@ -158,11 +158,11 @@ TEST_CASE("gathered sums grow with the number of occupied bins") {
   const auto block = random_particles(grid, count, 54);
   auto bins = allocate_bins<Device>(count, basis.bin_count());
   ScatterWorkspace<double, Device> workspace;
-  std::vector<Vector<2, double>> places;
+  std::vector<Vector<2, double>> positions;
   double mass = 0;
   edit(block, [&](const auto& particles) {
     for (int p = 0; p < count; ++p) {
-      places.push_back(particles.position_of(p));
+      positions.push_back(particles.position_of(p));
       mass += particles.mass(p);
     }
   });
@@ -170,7 +170,7 @@ TEST_CASE("gathered sums grow with the number of occupied bins") {
     edit(block, [&](const auto& particles) {
       for (int p = 0; p < count; ++p)
         for (int i = 0; i < 2; ++i)
-          particles.position(p, i) = places[static_cast<size_t>(p % bins_wanted)][i];
+          particles.position(p, i) = positions[static_cast<size_t>(p % bins_wanted)][i];
     });
     locate_particles(Exec(), block.particles, bins, basis);
     sort_by_bin(Exec(), bins);

@@ -150,12 +150,12 @@ TEMPLATE_TEST_CASE_SIG("a rigid translation stays one", "", ((int Dim, typename 
     REQUIRE(step(Exec(), state, bodies, setup.basis, NoVirtualStress{}, options) == -1);
 
   const auto particles = read(block);
-  double worst_place = 0, worst_velocity = 0, worst_stress = 0, worst_volume = 0;
+  double worst_position = 0, worst_velocity = 0, worst_stress = 0, worst_volume = 0;
   for (int p = 0; p < particles.count(); ++p) {
     for (int i = 0; i < Dim; ++i) {
       const double moved =
           static_cast<double>(particles.position(p, i)) - static_cast<double>(x0[static_cast<size_t>(p)][i]);
-      worst_place = std::max(worst_place, std::abs(moved - steps * 0.01 * static_cast<double>(c[i])));
+      worst_position = std::max(worst_position, std::abs(moved - steps * 0.01 * static_cast<double>(c[i])));
       worst_velocity =
           std::max(worst_velocity, std::abs(static_cast<double>(particles.velocity(p, i) - c[i])));
     }
@@ -164,7 +164,7 @@ TEMPLATE_TEST_CASE_SIG("a rigid translation stays one", "", ((int Dim, typename 
     worst_volume = std::max(worst_volume, std::abs(static_cast<double>(particles.volume(p)) / volume - 1));
   }
   const double round_off = 200 * steps * epsilon<Real>;
-  CHECK(worst_place < round_off);
+  CHECK(worst_position < round_off);
   CHECK(worst_velocity < round_off);
   CHECK(worst_stress < 100 * round_off);
   CHECK(worst_volume < round_off);

@@ -158,7 +158,7 @@ TEMPLATE_TEST_CASE("ghost nodes mirror their images; folding is the transpose", 
     }
 }
 
-TEMPLATE_LIST_TEST_CASE("at a wall, held components vanish and the others have no slope", "", WideBases) {
+TEMPLATE_LIST_TEST_CASE("at a wall, fixed components vanish and the others have no slope", "", WideBases) {
   constexpr int Dim = TestType::dimension;
   Random random(96);
   for (int trial = 0; trial < 20; ++trial) {
@@ -267,7 +267,7 @@ TEMPLATE_LIST_TEST_CASE("a corner between planes of symmetry moves as it does in
   const auto all = read(whole.block), part = read(corner.block);
   REQUIRE(all.count() == (part.count() << Dim));
   // Both lattices are in the order of their cells, so the corner's particles come in the same order.
-  double worst_place = 0, worst_stress = 0, moved = 0, largest = 0;
+  double worst_position = 0, worst_stress = 0, moved = 0, largest = 0;
   int next = 0;
   const auto start = read(Symmetric<TestType>(true).block);
   for (int p = 0; p < all.count(); ++p) {
@@ -275,7 +275,7 @@ TEMPLATE_LIST_TEST_CASE("a corner between planes of symmetry moves as it does in
     for (int i = 0; i < Dim; ++i) in_corner = in_corner && start.position(p, i) > 0;
     if (!in_corner) continue;
     for (int i = 0; i < Dim; ++i) {
-      worst_place = std::max(worst_place, std::abs(all.position(p, i) - part.position(next, i)));
+      worst_position = std::max(worst_position, std::abs(all.position(p, i) - part.position(next, i)));
       moved = std::max(moved, std::abs(all.position(p, i) - start.position(p, i)));
     }
     for (int c = 0; c < all.stress_size; ++c) {
@@ -287,7 +287,7 @@ TEMPLATE_LIST_TEST_CASE("a corner between planes of symmetry moves as it does in
   REQUIRE(next == part.count());
   CHECK(moved > 0.01);
   CHECK(largest > 1);
-  CHECK(worst_place < 1e-13);
+  CHECK(worst_position < 1e-13);
   CHECK(worst_stress < 1e-11);
 
   // The balance counts the corner once: its kinetic energy is a share of the whole body's.
@@ -303,7 +303,7 @@ TEMPLATE_LIST_TEST_CASE("a corner between planes of symmetry moves as it does in
 
 TEMPLATE_LIST_TEST_CASE("a patch under uniform stress is in balance at any offset of the mesh", "",
                         WideBases) {
-  // A bar between rollers at all faces but the last: it ends at any place within a cell, and there the
+  // A bar between rollers at all faces but the last: it ends at any position within a cell, and there the
   // virtual stress is the one it has. Nothing else acts, so no node may feel a force in a free component.
   constexpr int Dim = TestType::dimension;
   Random random(97);
@@ -318,16 +318,16 @@ TEMPLATE_LIST_TEST_CASE("a patch under uniform stress is in balance at any offse
     if constexpr (std::is_same<TestType, UniformGimpBasis<Dim, double>>::value)
       for (int i = 0; i < Dim; ++i) basis.half_width[i] = 0.5 / per_cell[i];
     const int columns = 9 + random.index(16);
-    std::vector<Vector<Dim, double>> places;
+    std::vector<Vector<Dim, double>> positions;
     for (int p = 0; p < columns; ++p)
       for (int q = 0; q < (Dim > 1 ? 3 * per_cell[1] : 1); ++q)
         for (int r = 0; r < (Dim > 2 ? 3 * per_cell[2] : 1); ++r) {
           const int k[3] = {p, q, r};
           Vector<Dim, double> x;
           for (int i = 0; i < Dim; ++i) x[i] = inner.lower[i] + inner.spacing[i] * (k[i] + 0.5) / per_cell[i];
-          places.push_back(x);
+          positions.push_back(x);
         }
-    const auto block = allocate_particles<Dim, double, Device>(static_cast<int>(places.size()));
+    const auto block = allocate_particles<Dim, double, Device>(static_cast<int>(positions.size()));
     SymmetricTensor<Dim, double> stress;
     for (int c = 0; c < SymmetricTensor<Dim, double>::size; ++c) stress[c] = c < 3 ? random(-1, 1) : 0;
     // Sheared and free at both ends, the walls gone, any offset of the mesh will do.
@@ -341,7 +341,7 @@ TEMPLATE_LIST_TEST_CASE("a patch under uniform stress is in balance at any offse
     }
     edit(block, [&](const auto& particles) {
       for (int p = 0; p < particles.count(); ++p) {
-        for (int i = 0; i < Dim; ++i) particles.position(p, i) = places[static_cast<size_t>(p)][i];
+        for (int i = 0; i < Dim; ++i) particles.position(p, i) = positions[static_cast<size_t>(p)][i];
         particles.mass(p) = particles.volume(p) = 0.01;
         for (int c = 0; c < particles.stress_size; ++c) particles.cauchy_stress(p, c) = stress[c];
       }
@@ -359,9 +359,9 @@ TEMPLATE_LIST_TEST_CASE("a patch under uniform stress is in balance at any offse
     for (int I = 0; I < basis.node_count(); ++I)
       for (int i = 0; i < Dim; ++i) {
         const int at = basis.grid.node_ijk(I)[i];
-        const bool held =
+        const bool fixed =
             (at == 1 && basis.mirrored(i, 0)) || (at == basis.grid.cells[i] - 1 && basis.mirrored(i, 1));
-        if (!held) worst = std::max(worst, std::abs(sums(I, 1 + Dim + i)));
+        if (!fixed) worst = std::max(worst, std::abs(sums(I, 1 + Dim + i)));
       }
     CAPTURE(trial, columns);
     CHECK(state.occupancy.boundary_node_count > 0);
@@ -440,7 +440,7 @@ TEMPLATE_TEST_CASE("N1 of wide bases against lists, random bodies and walls", ""
       basis.walls = random_walls<Dim>(random);
       const auto& grid = basis.grid;
       std::vector<bool> void_cell;
-      std::vector<Vector<Dim, double>> places;
+      std::vector<Vector<Dim, double>> positions;
       for_each_cell(grid, [&](const Vector<Dim, int>& cell) {
         bool inside = true;
         for (int i = 0; i < Dim; ++i) inside = inside && cell[i] > 0 && cell[i] < grid.cells[i] - 1;
@@ -448,12 +448,12 @@ TEMPLATE_TEST_CASE("N1 of wide bases against lists, random bodies and walls", ""
         if (void_cell.back()) return;
         Vector<Dim, double> x;
         for (int i = 0; i < Dim; ++i) x[i] = grid.lower[i] + grid.spacing[i] * (cell[i] + random(0.01, 0.99));
-        places.push_back(x);
+        positions.push_back(x);
       });
-      const auto block = allocate_particles<Dim, double, Device>(static_cast<int>(places.size()));
+      const auto block = allocate_particles<Dim, double, Device>(static_cast<int>(positions.size()));
       edit(block, [&](const auto& particles) {
         for (int p = 0; p < particles.count(); ++p) {
-          for (int i = 0; i < Dim; ++i) particles.position(p, i) = places[static_cast<size_t>(p)][i];
+          for (int i = 0; i < Dim; ++i) particles.position(p, i) = positions[static_cast<size_t>(p)][i];
           particles.mass(p) = particles.volume(p) = 1;
         }
       });
@@ -469,7 +469,7 @@ TEMPLATE_TEST_CASE("N1 of wide bases against lists, random bodies and walls", ""
       const auto in_n1 = boundary_by_lists(basis, void_cell, 1.5);
       int wrong = 0, expected_count = 0;
       for (int I = 0; I < basis.node_count(); ++I) {
-        const auto image = image_of(basis, I);  // the traction is declared at the mirror place
+        const auto image = image_of(basis, I);  // the traction is declared at the mirror position
         const TractionMask expected =
             in_n1[static_cast<size_t>(I)] ? declared(static_cast<size_t>(image.node)) : 0;
         wrong += got(static_cast<size_t>(I)) != expected;

@@ -168,7 +168,7 @@ TEST_CASE("energies add up over bodies, each with its own modulus") {
   CHECK_THAT(b.strain_energy, WithinRel(4 * 2 * 5 / 20. + 6 * 2 * 5 / 200., 1e-14));
   for (int i = 0; i < 2; ++i) CHECK(b.net_force[i] == 0);
 
-  edit(block, [](const auto& particles) {  // pairs in one place with opposite velocities
+  edit(block, [](const auto& particles) {  // pairs in one position with opposite velocities
     for (int p = 0; p < 10; ++p)
       for (int i = 0; i < 2; ++i) {
         particles.position(p, i) = particles.position(p / 2 * 2, i);

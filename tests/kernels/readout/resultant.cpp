@@ -24,11 +24,11 @@ struct Share {
 };
 
 template <int Dim>
-Share share(RandomBody<Dim>& body, bool conservative) {
+Share share(RandomBody<Dim>& body, bool at_all_active_nodes) {
   UniformVirtualStress<Dim, double> pressure;
   pressure.count = 1;
   pressure.stress[0] = pressure_stress<Dim>(1e5);
-  const auto b = body.resultant(pressure, conservative);
+  const auto b = body.resultant(pressure, at_all_active_nodes);
   const double scale = 1e5 * body.area;
   // About the middle of the body, not about the origin.
   auto torque = b.net_torque;
@@ -45,9 +45,9 @@ void measure() {
   std::vector<double> boundary, all;
   for (unsigned seed = 1000; seed < 1100; ++seed) {
     RandomBody<Dim> body(seed);
-    const auto mod = share(body, false), conservative = share(body, true);
+    const auto mod = share(body, false), at_all_active_nodes = share(body, true);
     boundary.push_back(mod.force);
-    all.push_back(std::max(conservative.force, conservative.torque));
+    all.push_back(std::max(at_all_active_nodes.force, at_all_active_nodes.torque));
   }
   std::sort(boundary.begin(), boundary.end());
   std::printf(
@@ -69,14 +69,14 @@ struct Dam {
     field.count = 1;
     field.field[0] = HydrostaticStress<2, double>{9810, 8, 0, {{0, 1}}};
     field.factor[0] = 1;
-    std::vector<Vector<2, double>> places;
+    std::vector<Vector<2, double>> positions;
     for (double y = 0.125; y < 10; y += 0.25)
       for (double x = 0.125; x < 14; x += 0.25)
-        if (x > 2 + 0.5 * y) places.push_back({{x, y}});
-    block = allocate_particles<2, double, Device>(static_cast<int>(places.size()));
+        if (x > 2 + 0.5 * y) positions.push_back({{x, y}});
+    block = allocate_particles<2, double, Device>(static_cast<int>(positions.size()));
     edit(block, [&](const auto& p) {
       for (int k = 0; k < p.count(); ++k) {
-        for (int i = 0; i < 2; ++i) p.position(k, i) = places[static_cast<size_t>(k)][i];
+        for (int i = 0; i < 2; ++i) p.position(k, i) = positions[static_cast<size_t>(k)][i];
         p.volume(k) = p.mass(k) = 0.0625;
       }
     });
@@ -90,22 +90,22 @@ struct Dam {
     });
     return nodes;
   }
-  /// By the particle kernels; `held` at the lower face.
+  /// By the particle kernels; `fixed` at the lower face.
   template <class Basis>
-  TractionResultant<2> of_particles(const Basis& basis, ComponentMask held,
+  TractionResultant<2> of_particles(const Basis& basis, ComponentMask fixed,
                                     const FaceCover<Device>& cover = {}) const {
     auto state = make_state(block.particles, basis);
     state.occupancy.tractions = declared(basis.grid);
     edit(state.nodes.fixed_components, [&](const auto& host) {
       for (int I = 0; I < basis.node_count(); ++I)
-        if (basis.grid.node_position(I)[1] == 0) host(I) = held;
+        if (basis.grid.node_position(I)[1] == 0) host(I) = fixed;
     });
     REQUIRE(update_occupancy(Exec(), block.particles, state.occupancy, basis) == -1);
     return resultant(Exec(), state, basis, field, ~TractionMask(0), cover);
   }
   template <class Lanes>
-  TractionResultant<2> of_lanes(Lanes lanes, ComponentMask held, const FaceCover<Device>& cover = {}) const {
-    lanes.memory.walls.fixed[1][0] = held;
+  TractionResultant<2> of_lanes(Lanes lanes, ComponentMask fixed, const FaceCover<Device>& cover = {}) const {
+    lanes.memory.walls.fixed[1][0] = fixed;
     REQUIRE(pack_lanes(Exec(), block.particles, lanes) == -1);
     return resultant(Exec(), lanes, field, ~TractionMask(0), cover);
   }
@@ -124,30 +124,30 @@ TEST_CASE(
   measure<3>();
 }
 
-TEST_CASE("a face that ends at a support has its whole resultant, whatever is held there") {
+TEST_CASE("a face that ends at a support has its whole resultant, whatever is fixed there") {
   const Dam dam;
   const double x = 9810 * 64 / 2., y = -9810 * 64 / 4., torque = -9810 * 416 / 3.;
   const LinearBasis<2, double> basis{dam.grid};
   LaneState<2, double, Device> lanes;
   lanes.memory.grid = dam.grid;
   lanes.boundary.declared = dam.declared(dam.grid);
-  for (const auto held : {ComponentMask{2}, ComponentMask{3}}) {  // a roller, a clamp
-    const auto linear = dam.of_particles(basis, held);
+  for (const auto fixed : {ComponentMask{2}, ComponentMask{3}}) {  // a roller, a clamp
+    const auto linear = dam.of_particles(basis, fixed);
     CHECK_THAT(linear.force[0], WithinRel(x, 1e-12));
     CHECK_THAT(linear.force[1], WithinRel(y, 1e-12));
     CHECK_THAT(linear.torque[2], WithinRel(torque, 2e-3));
-    check_same(dam.of_lanes(lanes, held), linear);
+    check_same(dam.of_lanes(lanes, fixed), linear);
 
     QuadraticBSplineBasis<2, double> splines;
     splines.grid = with_ghost_layer(dam.grid);
-    splines.walls.fixed[1][0] = held;
+    splines.walls.fixed[1][0] = fixed;
     SplineLaneState<2, double, Device> spline_lanes;
     spline_lanes.grid = dam.grid;
     spline_lanes.boundary.declared = dam.declared(splines.grid);
-    const auto wide = dam.of_particles(splines, held);
+    const auto wide = dam.of_particles(splines, fixed);
     CHECK_THAT(wide.force[0], WithinRel(x, 5e-3));
     CHECK_THAT(wide.force[1], WithinRel(y, 5e-3));
-    check_same(dam.of_lanes(spline_lanes, held), wide);
+    check_same(dam.of_lanes(spline_lanes, fixed), wide);
   }
   // A caller who knows better: particles that cover half as much, or nothing, leave half of what the support
   // takes up, or all of it, in the sum.
@@ -161,7 +161,7 @@ TEST_CASE("a face that ends at a support has its whole resultant, whatever is he
     CHECK_THAT(less.force[1], WithinRel(share * y + (1 - share) * whole, 1e-12));
     check_same(dam.of_lanes(lanes, 3, half), less);
   }
-  // Where nothing is held, the foot is loaded too: by 78,480 Pa where chi is 1, over the half metre of the
+  // Where nothing is fixed, the foot is loaded too: by 78,480 Pa where chi is 1, over the half metre of the
   // cell that touches void cells, and by half of it where chi falls to 0, over the next.
   const auto open = dam.of_particles(basis, 0);
   CHECK_THAT(open.force[0], WithinRel(x, 1e-12));

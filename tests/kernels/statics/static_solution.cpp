@@ -363,7 +363,7 @@ TEST_CASE("patch test on a distorted mesh") {
   const auto mesh = make_distorted_mesh<2, double>(0.15, {{7, 6, 1}});
   const auto on_host = make_distorted_mesh<2, double, Host>(0.15, {{7, 6, 1}});
   const auto& grid = on_host.grid;
-  std::vector<Vector<2, double>> places;
+  std::vector<Vector<2, double>> positions;
   std::vector<double> volumes;
   for_each_cell(grid, [&](const auto& cell) {
     if (cell[0] < 1 || cell[0] > 5 || cell[1] < 1 || cell[1] > 4) return;
@@ -378,15 +378,15 @@ TEST_CASE("patch test on a distorted mesh") {
           dxi += (a & 1 ? t : -t) * corner;
           deta += (a >> 1 ? s : -s) * corner;
         }
-        places.push_back(x);
+        positions.push_back(x);
         volumes.push_back(0.25 * (dxi[0] * deta[1] - dxi[1] * deta[0]));
       }
   });
-  const auto block = allocate_particles<2, double, Device>(static_cast<int>(places.size()));
+  const auto block = allocate_particles<2, double, Device>(static_cast<int>(positions.size()));
   edit(block, [&](const auto& particles) {
     for (int k = 0; k < particles.count(); ++k) {
       const auto n = static_cast<size_t>(k);
-      for (int i = 0; i < 2; ++i) particles.position(k, i) = places[n][i];
+      for (int i = 0; i < 2; ++i) particles.position(k, i) = positions[n][i];
       particles.mass(k) = particles.volume(k) = volumes[n];
     }
   });

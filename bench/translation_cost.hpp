@@ -12,14 +12,15 @@ namespace vsb::bench {
 /// both in turns. The mean counts: particles on a lattice change their cells all at once, one step in five,
 /// and packing anew comes now and then.
 template <class Real>
-void measure_flow(int direction, Places places, int steps, Record& record) {
+void measure_translation(int direction, Arrangement arrangement, int steps, Record& record) {
   const std::string name =
-      std::string(places == Places::lattice ? "flow along " : "jittered, along ") + "xyz"[direction];
+      std::string(arrangement == Arrangement::lattice ? "translation along " : "jittered, along ") +
+      "xyz"[direction];
   const Size size{"block", 22, 22, 2, steps / 10 + 4, steps / 10 + 4};
   auto velocity = Vector<3, double>::zero();
-  auto resting = make_moving_block<3, Real>(size, velocity, places);
+  auto resting = make_moving_block<3, Real>(size, velocity, arrangement);
   velocity[direction] = 0.1;
-  auto moving = make_moving_block<3, Real>(size, velocity, places);
+  auto moving = make_moving_block<3, Real>(size, velocity, arrangement);
   auto a = make_lanes(resting), b = make_lanes(moving);
   prepare_lane_step(Exec(), a, NoVirtualStress{});
   prepare_lane_step(Exec(), b, NoVirtualStress{});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Steps in one sweep, re-mapped by the consistent mass matrix, are steps in two, and those of the particle
+/// Steps re-mapped by the consistent mass matrix equal steps with a second sweep, and those of the particle
 /// kernels.
 #include "both_engines.hpp"
 
@@ -19,56 +19,56 @@ UniformVirtualStress<Dim, Real> pressure(Real p) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE_SIG("one sweep: loaded bodies at rest and moving", "",
+TEMPLATE_TEST_CASE_SIG("re-map by the mass matrix: loaded bodies at rest and moving", "",
                        ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (3, double),
                        (1, float), (2, float), (3, float)) {
-  for (const bool cubic : {true, false})
+  for (const bool equal_spacing : {true, false})
     for (const double drift : {0., 5.}) {
       if (sizeof(Real) == 4 && drift > 0) continue;
-      BothEngines<Dim, Real> engines({cubic, drift});
-      engines.lanes.memory.sweeps = Sweeps::one;
+      BothEngines<Dim, Real> engines({equal_spacing, drift});
+      engines.lanes.memory.remap_method = RemapMethod::mass_matrix;
       engines.declare_everywhere(1);
       engines.options.damping = drift > 0 ? Real(0) : Real(0.05);
       engines.options.gravity[Dim - 1] = -engines.amplitude;
       engines.run(elastic<Dim, Real>(), DeterminantVolume{}, [&](int n) {
         return pressure<Dim, Real>(engines.amplitude * static_cast<Real>(0.04 * n));
       });
-      CAPTURE(cubic, drift, engines.moved);
-      CHECK(engines.lanes.memory.lanes.one_sweep());
+      CAPTURE(equal_spacing, drift, engines.moved);
+      CHECK(engines.lanes.memory.lanes.remaps_by_mass_matrix());
       check_same(engines);
       CHECK((engines.moved > 10 || drift == 0));
       CHECK((engines.lanes.repacked > 0 || drift == 0 || Dim == 1));
     }
 }
 
-TEMPLATE_TEST_CASE_SIG("one sweep: bodies against walls", "", ((int Dim), Dim), 1, 2, 3) {
+TEMPLATE_TEST_CASE_SIG("re-map by the mass matrix: bodies against walls", "", ((int Dim), Dim), 1, 2, 3) {
   BothEngines<Dim, double> engines({false, -0.2, true});
-  engines.lanes.memory.sweeps = Sweeps::one;
+  engines.lanes.memory.remap_method = RemapMethod::mass_matrix;
   engines.lanes.memory.walls.fixed[0][0] = 1;
   engines.run(elastic<Dim, double>(), DeterminantVolume{}, [](int) { return NoVirtualStress{}; });
-  CHECK(engines.lanes.memory.lanes.one_sweep());
+  CHECK(engines.lanes.memory.lanes.remaps_by_mass_matrix());
   check_same(engines);
 }
 
-TEMPLATE_TEST_CASE_SIG("particles per cell decide between one sweep and two", "", ((int Dim), Dim), 1, 2, 3) {
+TEMPLATE_TEST_CASE_SIG("particles per cell decide the method of the re-map", "", ((int Dim), Dim), 1, 2, 3) {
   // In 3D the particles must be too many for caches, too.
-  const auto one_sweep = [](int along, int cells) {
+  const auto remaps_by_mass_matrix = [](int along, int cells) {
     const auto grid = make_grid<Dim, double>({{cells, cells, cells}});
     const auto block = fill_cells<Dim, double>(grid, along, 1., [](const Vector<Dim, int>&) { return true; });
     LaneState<Dim, double, Device> s;
     s.memory.grid = grid;
     REQUIRE(pack_lanes(Exec(), block.particles, s) == -1);
-    const bool one = s.memory.lanes.one_sweep();
-    s.memory.sweeps = one ? Sweeps::two : Sweeps::one;
+    const bool one = s.memory.lanes.remaps_by_mass_matrix();
+    s.memory.remap_method = one ? RemapMethod::second_sweep : RemapMethod::mass_matrix;
     REQUIRE(pack_lanes(Exec(), block.particles, s) == -1);
-    CHECK(s.memory.lanes.one_sweep() == !one);
+    CHECK(s.memory.lanes.remaps_by_mass_matrix() == !one);
     return one;
   };
-  CHECK(!one_sweep(2, 20));
-  CHECK(one_sweep(3, 20) == (Dim < 3));
-  CHECK(one_sweep(4, 5) == (Dim < 3));
+  CHECK(!remaps_by_mass_matrix(2, 20));
+  CHECK(remaps_by_mass_matrix(3, 20) == (Dim < 3));
+  CHECK(remaps_by_mass_matrix(4, 5) == (Dim < 3));
   CellLanes<Dim, double, Device> large;
   large.particle_count = 64 * 20000;
-  CHECK(one_sweep_is_faster(large, 20000));
-  CHECK(one_sweep_is_faster(large, 50000) == (Dim < 3));
+  CHECK(mass_matrix_is_faster(large, 20000));
+  CHECK(mass_matrix_is_faster(large, 50000) == (Dim < 3));
 }

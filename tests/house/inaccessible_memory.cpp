@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// \file
-/// Does not compile, and says why: no execution space of this build reaches memory `Elsewhere`.
+/// Does not compile, and says why: no execution space of this build can access memory `Elsewhere`.
 #include <vsb/kernels/boundary/mark_boundary_nodes.hpp>
 #include <vsb/physics/linear_basis.hpp>
 

@@ -39,21 +39,21 @@ steps = 12000
 """
 
 
-class Flying(ProgramTest):
+class RigidTranslation(ProgramTest):
     def stress_after(self, text, modulus, epsilon, *more):
         """The largest stress of the last frame, in round-off of the modulus a step."""
-        scene = self.folder / "flying.toml"
+        scene = self.folder / "translating.toml"
         scene.write_text(text)
-        done = vsb("run", scene, "--quiet", "--out", self.folder / "flying", "--set",
+        done = vsb("run", scene, "--quiet", "--out", self.folder / "translating", "--set",
                    "method.allow_particles_on_grid_lines=true", *more)
         self.assertEqual(done.returncode, 0, done.stderr)
-        fields = last_fields(self.folder / "flying")
+        fields = last_fields(self.folder / "translating")
         self.assertTrue(np.all(np.isfinite(fields["position"])))
         return np.abs(fields["cauchy_stress"]).max() / (modulus * epsilon)
 
     def test_a_bar_whose_particles_come_next_to_the_faces_of_their_cells(self):
         for engine in ("cell_lanes", "particles"):
-            for shift in range(12):  # other places of the particles in their cells, one of them on faces
+            for shift in range(12):  # other positions of the particles in their cells, one of them on faces
                 with self.subTest(engine=engine, shift=shift):
                     origin = 0.25 + 0.02 * shift
                     text = BAR.replace("3.39", str(3 + origin)).replace("5.89", str(5.5 + origin)).replace(

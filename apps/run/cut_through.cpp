@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "run/torn_body.hpp"
+#include "run/cut_through.hpp"
 
 #include <array>
 #include <cmath>
