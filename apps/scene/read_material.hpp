@@ -36,12 +36,14 @@ struct MaterialKeys : KeyTable {
                              "Pa",
                              "of the largest principal stress; the apex, or left out: no cut-off"};
   NumberKey yield_stress{*this, "yield_stress", Range::positive(), required, "Pa", "in uniaxial stress"};
-  NumberKey hardening_modulus{*this,
-                              "hardening_modulus",
-                              Range::at_least(0),
-                              0.0,
-                              "Pa",
-                              "growth of the strength with the plastic strain"};
+  NumberKey hardening_modulus{
+      *this,
+      "hardening_modulus",
+      Range::at_least(0),
+      0.0,
+      "Pa",
+      "von Mises: of the yield stress with the equivalent plastic strain; Drucker-Prager: of the "
+      "cohesion with xi times the plastic multiplier (physics/drucker_prager.hpp)"};
   ChoiceKeyOf<int> cone{*this,
                         "cone",
                         {{drucker_prager_cones[0], 0, "through its outer edges"},

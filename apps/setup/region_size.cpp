@@ -28,6 +28,21 @@ void for_each_part(const AxisBox& box, int dimension, int n, const Visit& visit)
   }
 }
 
+/// Halves the empty slab beside each face of the bounds until nothing of it is left.
+void tighten(const Region& region, AxisBox& bounds, int dimension) {
+  for (size_t i = 0; i < static_cast<size_t>(dimension); ++i)
+    for (const bool upper : {false, true}) {
+      double empty = upper ? bounds.upper[i] : bounds.lower[i];
+      double filled = upper ? bounds.lower[i] : bounds.upper[i];
+      for (double middle; middle = 0.5 * (empty + filled), middle != empty && middle != filled;) {
+        AxisBox slab = bounds;
+        (upper ? slab.lower : slab.upper)[i] = middle;
+        (region.overlap(slab) == Overlap::none ? empty : filled) = middle;
+      }
+      (upper ? bounds.upper : bounds.lower)[i] = empty;
+    }
+}
+
 }  // namespace
 
 AxisBox bounds_of(const Region& region, const AxisBox& box, int dimension) {
@@ -55,6 +70,7 @@ AxisBox bounds_of(const Region& region, const AxisBox& box, int dimension) {
     }
     bounds = next;
   }
+  tighten(region, bounds, dimension);
   return bounds;
 }
 

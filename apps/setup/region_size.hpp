@@ -8,8 +8,8 @@
 
 namespace vsb::app {
 
-/// A box around what lies of a region in a box, at most some tenth too wide; an empty region has the box
-/// itself.
+/// The box around what lies of a region in a box, to round-off where Region::overlap is exact, as for one
+/// shape; an empty region has the box itself.
 AxisBox bounds_of(const Region& region, const AxisBox& box, int dimension);
 
 /// A volume that the region has in the box at least.

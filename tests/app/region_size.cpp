@@ -22,10 +22,8 @@ void check_size(const Region& region, int dimension, const AxisBox& exact, doubl
   const auto bounds = bounds_of(region, box, dimension);
   for (size_t i = 0; i < static_cast<size_t>(dimension); ++i) {
     const double edge = exact.upper[i] - exact.lower[i];
-    CHECK(bounds.lower[i] <= exact.lower[i]);
-    CHECK(bounds.lower[i] >= exact.lower[i] - 0.15 * edge);
-    CHECK(bounds.upper[i] >= exact.upper[i]);
-    CHECK(bounds.upper[i] <= exact.upper[i] + 0.15 * edge);
+    CHECK(std::abs(bounds.lower[i] - exact.lower[i]) < 1e-12 * edge);
+    CHECK(std::abs(bounds.upper[i] - exact.upper[i]) < 1e-12 * edge);
   }
   const double least = least_volume(region, box, dimension);
   CHECK(least <= volume * (1 + 1e-12));

@@ -213,7 +213,37 @@ class Input(ProgramTest):
         self.assertFalse(warned(0.0))
         self.assertFalse(warned(0.6))
         self.assertTrue(warned(0.6, *splines))
+        one_cell = lambda top: BAR.replace("lower = [0.0], upper = [10.0]", "lower = [-0.5], upper = [10.0]").replace("upper = [8.0]", f"upper = [{top}]")
+        for top in (1.0, 3.75, 8.0):  # whatever the body's height
+            self.assertIn("begins 1 cells from the face x_min", self.check(one_cell(top), *splines).stderr)
+            self.assertNotIn("across that gap", self.check(one_cell(top)).stderr)
         self.assertFalse(warned(0.2, "--set", 'faces.x_min="open"', "--set", "time.until_static=", "--set", "time.steps=1"))
+
+    def test_two_bodies(self):
+        """Bodies that share nodes hold on to each other; the strain of B-splines does not jump between two materials."""
+        pair = lambda start, modulus: BAR + f"""
+[[body]]
+shape = {{ box = {{ lower = [{start}], upper = [9.0] }} }}
+particles_per_cell = 2
+density = 1000.0
+material = {{ youngs_modulus = {modulus}, poisson_ratio = 0.0 }}
+"""
+        splines = ("--set", 'method.basis="quadratic_bspline"')
+        bar = lambda text: text.replace("lower = [0.0], upper = [8.0]", "lower = [0.0], upper = [4.0]")
+        for start, basis, told in ((4.0, (), False), (4.9, (), True), (5.0, (), False), (5.0, splines, True), (5.5, splines, False)):
+            self.assertEqual("cells apart" in self.check(bar(pair(start, 1e6)), *basis).stderr, told, start)
+        for modulus, basis, told in ((1e6, splines, False), (1e7, splines, True), (1e7, (), False)):
+            self.assertEqual("differ 10 times in stiffness" in self.check(bar(pair(4.0, modulus)), *basis).stderr, told)
+
+    def test_sudden_weight_and_water_that_stands_askew(self):
+        weight = ("--set", "gravity=[-10.0]", "--set", 'body[0].material={ law = "von_mises", youngs_modulus = 1e6, poisson_ratio = 0.0, yield_stress = 1e5 }')
+        told = lambda *more: "gravity acts in full" in self.check(BAR, *weight, *more).stderr
+        self.assertTrue(told())
+        self.assertFalse(told("--set", "method.damping=0.8"))
+        self.assertFalse(told("--set", "gravity=[0.0]"))
+        water = GOOD.replace("pressure = 1e3", "hydrostatic = { unit_weight = 1e4, level = 2.0 }")
+        for gravity, askew in (("[0.0, -0.1]", False), ("[0.0, 0.0]", False), ("[-0.1, 0.0]", True)):
+            self.assertEqual("not against gravity" in self.check(water, "--set", f"gravity={gravity}").stderr, askew)
 
     def test_an_angle_of_friction_in_radians(self):
         soil = lambda angle: ("--set", f'body[0].material={{ law = "mohr_coulomb", youngs_modulus = 1e6, poisson_ratio = 0.2, cohesion = 1e4, friction_angle = {angle} }}')
