@@ -65,7 +65,7 @@ int run_command(int argc, char** argv) {
       "  vsb run apps/scenes/column.toml --set time.steps=30000   run it, with another number of steps\n"
       "  /usr/bin/python3 apps/plot/plot.py results/column             draw its pictures\n"
       "  vsb keys traction                                        every key of a table, or of a name\n\n"
-      "Exit codes: 0 done, 2 bad usage or input, 3 diverged, 4 files cannot be read or written,\n"
+      "Exit codes: 0 done, 2 bad usage or input, 3 diverged, 4 results cannot be read or written,\n"
       "5 interrupted, checkpoint written, 6 a study ran but missed an expectation, 7 not static after "
       "max_steps\n"
       "(of until_static) or max_iterations (of static), 8 a healthy body left the grid: its last state is a "
