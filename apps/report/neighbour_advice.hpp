@@ -14,7 +14,8 @@ namespace vsb::app {
 /// reach across: they act on each other over the gap.
 std::vector<std::string> gap_advice(const Scene& scene);
 
-/// On bodies of other stiffness that touch, with B-splines, whose gradients do not jump at an interface.
+/// On bodies of other stiffness that touch: the strain jumps between them, and basis functions follow that on
+/// lines of the grid alone, B-splines nowhere.
 std::vector<std::string> interface_advice(const Scene& scene);
 
 }  // namespace vsb::app

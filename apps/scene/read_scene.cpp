@@ -36,7 +36,8 @@ struct SceneKeys : KeyTable {
         "quadratic B-splines, boundary boxes split and cut, 2 particles per cell and direction"}},
       first_word,
       "what the scene takes where it does not say"};
-  IntegerKey dimension{*this, "dimension", 1, 3, required, "", "of space; in 2 plane strain, in 1 uniaxial strain"};
+  IntegerKey dimension{
+      *this, "dimension", 1, 3, required, "", "of space; in 2 plane strain, in 1 uniaxial strain"};
   ChoiceKeyOf<bool> single_precision{
       *this, "precision", {{"double", false}, {"float", true}}, first_word, "of the particles and nodes"};
   NumbersKey gravity{*this, "gravity", per_direction, Range::any(), 0.0, "m/s^2", "on all bodies"};

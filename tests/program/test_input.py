@@ -234,6 +234,8 @@ material = {{ youngs_modulus = {modulus}, poisson_ratio = 0.0 }}
             self.assertEqual("cells apart" in self.check(bar(pair(start, 1e6)), *basis).stderr, told, start)
         for modulus, basis, told in ((1e6, splines, False), (1e7, splines, True), (1e7, (), False)):
             self.assertEqual("differ 10 times in stiffness" in self.check(bar(pair(4.0, modulus)), *basis).stderr, told)
+        between_lines = bar(pair(4.0, 1e7)).replace("upper = [4.0]", "upper = [4.25]").replace("lower = [4.0]", "lower = [4.25]")
+        self.assertIn("is not a line of the grid", self.check(between_lines).stderr)
 
     def test_sudden_weight_and_water_that_stands_askew(self):
         weight = ("--set", "gravity=[-10.0]", "--set", 'body[0].material={ law = "von_mises", youngs_modulus = 1e6, poisson_ratio = 0.0, yield_stress = 1e5 }')
