@@ -9,6 +9,7 @@
 #include "setup/cut_bodies.hpp"
 #include "setup/cut_lattice.hpp"
 #include "setup/face_cover.hpp"
+#include "setup/initial_stress.hpp"
 #include "setup/lattice_points.hpp"
 #include "setup/moment_fit.hpp"
 #include "setup/needed_memory.hpp"
@@ -166,6 +167,7 @@ PlacedParticles place_particles(const Scene& scene) {
       throw SetupError("more than 2^31 particles");
     placed.bodies.push_back({static_cast<int>(first), static_cast<int>(placed.position.size())});
   }
+  refuse_stress_beyond_yield(scene, placed);
   if (scene.method.moment_fit) placed.moment_fit = fit_moments(scene, placed);
   return placed;
 }
