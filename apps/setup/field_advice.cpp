@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "setup/imposition_advice.hpp"
 #include "setup/loads.hpp"
 #include "setup/open_faces.hpp"
 
@@ -116,6 +117,7 @@ ThinWall thin_wall(const Scene& scene, const OccupiedCells& grid) {
 std::vector<std::string> field_advice(const Scene& scene, const PlacedParticles& placed,
                                       const OccupiedCells& grid) {
   std::vector<std::string> advice = open_face_advice(scene, placed);
+  for (auto& text : imposition_advice(scene, placed, grid)) advice.push_back(std::move(text));
   const auto box = bounding_box(scene.grid, scene.dimension);
   const auto spurious = spurious_traction(scene, placed);
   for (const auto& traction : scene.tractions) {

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "setup/loaded_pieces.hpp"
+
 namespace vsb::app {
 
 namespace {
@@ -119,6 +121,25 @@ std::vector<TractionMask> carried_by_particles(const Scene& scene, const PlacedP
   return masks;
 }
 
+std::vector<LoadedPiece> loaded_pieces(const Scene& scene, size_t k, const PlacedParticles& placed) {
+  const auto& traction = scene.tractions[k];
+  const double largest = *std::max_element(placed.volume.begin(), placed.volume.end());
+  const double search_radius = 4 * std::pow(largest, 1.0 / scene.dimension);
+  const NearestParticle nearest(placed, traction.layer, search_radius);
+  std::vector<LoadedPiece> pieces;
+  for_each_piece(scene, k, [&](const SurfacePiece& piece) {
+    const int p = nearest(piece.position);
+    if (p < 0)
+      throw SetupError(
+          traction.where,
+          fmt::format("traction '{}' has no material point within {:.6g} m of {} on its surface: check its "
+                      "'layer'",
+                      traction.name, search_radius, position_text(scene, piece.position)));
+    pieces.push_back({piece, p});
+  });
+  return pieces;
+}
+
 std::vector<LoadedPoint> loaded_points(const Scene& scene, const PlacedParticles& placed) {
   std::vector<LoadedPoint> points;
   for (size_t k = 0; k < scene.tractions.size(); ++k) {
@@ -129,20 +150,9 @@ std::vector<LoadedPoint> loaded_points(const Scene& scene, const PlacedParticles
         points.push_back({piece.position, piece.area, mask, carried_by_grid});
       });
     if (traction.imposition == Imposition::material_points) {
-      const double largest = *std::max_element(placed.volume.begin(), placed.volume.end());
-      const double search_radius = 4 * std::pow(largest, 1.0 / scene.dimension);
-      const NearestParticle nearest(placed, traction.layer, search_radius);
       std::map<int, Point> area;
-      for_each_piece(scene, k, [&](const SurfacePiece& piece) {
-        const int p = nearest(piece.position);
-        if (p < 0)
-          throw SetupError(traction.where,
-                           fmt::format("traction '{}' has no material point within {:.6g} m of {} "
-                                       "on its surface: "
-                                       "check its 'layer'",
-                                       traction.name, search_radius, position_text(scene, piece.position)));
+      for (const auto& [piece, p] : loaded_pieces(scene, k, placed))
         for (size_t i = 0; i < 3; ++i) area[p][i] += piece.area[i];
-      });
       for (const auto& [p, sum] : area)
         points.push_back({placed.position[static_cast<size_t>(p)], sum, mask, p});
     }
