@@ -28,26 +28,44 @@ std::optional<double> default_half_width(const Scene& scene) {
   return {};
 }
 
-/// What only the linear basis can do.
+/// What only the linear basis can do, by the key that wants it.
 std::string refusal(const Scene& scene) {
-  if (scene.grid.mapped()) return "is for uniform grids; on rectilinear and polar ones the basis is linear";
-  if (scene.single_precision) return "is for precision = \"double\"";
-  for (const auto& traction : scene.tractions) {
+  if (scene.grid.mapped())
+    return fmt::format("is for uniform grids, and grid.{} gives none: there the basis is linear",
+                       scene.grid.polar ? "polar" : "x");
+  if (scene.single_precision) return "is for precision = \"double\", and the scene has \"float\"";
+  for (size_t k = 0; k < scene.tractions.size(); ++k) {
+    const auto& traction = scene.tractions[k];
     if (traction.imposition == Imposition::nodal)
       return fmt::format(
-          "cannot have traction '{}' imposed at nodes: with this basis a value at a node is not the field's "
-          "value there",
-          traction.name);
+          "cannot have traction[{}].imposition = \"nodal\" ('{}'): with this basis a value at a node is not "
+          "the field's value there",
+          k, traction.name);
     if (traction.imposition == Imposition::virtual_stress_original)
       return fmt::format(
-          "cannot have traction '{}' imposed by the original virtual stress method, whose sums over whole "
+          "cannot have traction[{}].imposition = \"virtual_stress_original\" ('{}'), whose sums over whole "
           "cells are for the linear basis",
-          traction.name);
+          k, traction.name);
   }
   return "";
 }
 
 }  // namespace
+
+std::string unfit_setting(const Scene& scene) {
+  const auto reason = scene.setting == Setting::accurate ? refusal(scene) : "";
+  if (reason.empty()) return "";
+  return fmt::format(
+      "stands for method.basis = \"quadratic_bspline\", which {}; change that, or give method.basis = "
+      "\"linear\" beside the setting",
+      reason);
+}
+
+std::string linear_beside_setting(const Scene& scene) {
+  if (scene.setting != Setting::accurate || scene.method.basis != BasisKind::quadratic_bspline) return "";
+  return "; setting = \"accurate\" takes \"quadratic_bspline\" unless method.basis = \"linear\" is given "
+         "beside it";
+}
 
 void read_basis(TableReader& r, const BasisKeys& keys, Scene& scene) {
   const auto basis = r.read<BasisKind>(
@@ -56,9 +74,7 @@ void read_basis(TableReader& r, const BasisKeys& keys, Scene& scene) {
   if (basis != BasisKind::linear)
     if (const auto reason = refusal(scene); !reason.empty()) {
       const auto& name = keys.basis.word(basis);
-      if (r.has(keys.basis)) r.fail(keys.basis, fmt::format("\"{}\" {}", name, reason));
-      r.missing(keys.basis,
-                fmt::format("\"linear\": \"{}\", which setting = \"accurate\" takes, {}", name, reason));
+      r.fail(keys.basis, fmt::format("\"{}\" {}", name, reason));
     }
   const auto& half_width = keys.gimp_half_width;
   if (basis != BasisKind::ugimp) {

@@ -26,6 +26,14 @@ struct BasisKeys {
                                      "of ugimp: half the size of a particle, in cells"};
 };
 
+/// Why a scene cannot have the basis of setting = "accurate", where that is its setting, and what to do;
+/// empty where it can. The scene must be known as for read_basis.
+std::string unfit_setting(const Scene& scene);
+
+/// Follows what is for the linear basis alone: how a scene has it whose setting takes another; empty for
+/// others.
+std::string linear_beside_setting(const Scene& scene);
+
 /// Reads them into scene.method, whose other keys need not be known; grid, bodies and tractions must. Refuses
 /// what the basis cannot do.
 void read_basis(TableReader& method_table, const BasisKeys& keys, Scene& scene);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "scene/limits.hpp"
+#include "scene/read_basis.hpp"
 #include "scene/read_output.hpp"
 
 namespace vsb::app {
@@ -98,7 +99,7 @@ const NumberKey& PublishedKeys::error(const std::string& name) const {
 }
 
 Comparison read_comparison(TableReader& document, const SubtableKey& key, const MaterialSpec& material,
-                           BasisKind basis, MoreNorms& more) {
+                           const Scene& scene, MoreNorms& more) {
   const auto& keys = compare_keys;
   if (!document.has(key)) return {};
   TableReader r = document.table(key);
@@ -113,7 +114,8 @@ Comparison read_comparison(TableReader& document, const SubtableKey& key, const 
   else
     comparison = read_ellipse(r, keys.ellipse);
   more.recovered = r.read(keys.recovered);
-  if (more.recovered && basis != BasisKind::linear) r.fail(keys.recovered, recovery_is_linear);
+  if (more.recovered && scene.method.basis != BasisKind::linear)
+    r.fail(keys.recovered, recovery_is_linear + linear_beside_setting(scene));
   more.cell_means = r.read(keys.cell_means);
   r.finish();
   return comparison;

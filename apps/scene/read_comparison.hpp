@@ -63,7 +63,7 @@ inline const PublishedKeys published_keys;
 
 /// Bodies and basis must be known. `key` is that of the document.
 Comparison read_comparison(TableReader& document, const SubtableKey& key, const MaterialSpec& material,
-                           BasisKind basis, MoreNorms& more);
+                           const Scene& scene, MoreNorms& more);
 /// The comparison must be known, and with it the names of the errors.
 std::vector<Published> read_published(TableReader& document, const SubtablesKey& key, const Scene& scene);
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "scene/read_basis.hpp"
+
 namespace vsb::app {
 
 namespace {
@@ -10,8 +12,8 @@ namespace {
 std::string refusal(const Scene& scene) {
   if (scene.method.basis != BasisKind::linear)
     return "is for basis = \"linear\": sums with wider functions run over several cells, and fitting them "
-           "cell by "
-           "cell makes them worse";
+           "cell by cell makes them worse" +
+           linear_beside_setting(scene);
   if (scene.grid.mapped()) return "is for uniform grids, whose cells are boxes";
   if (std::none_of(scene.bodies.begin(), scene.bodies.end(), is_irregular))
     return "is for particles on rings (lattice.concentric) or with jitter: on a lattice of equal boxes the "

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 
+#include "scene/read_basis.hpp"
+
 namespace vsb::app {
 
 namespace {
@@ -40,7 +42,8 @@ OutputSpec read_output(TableReader r, const Scene& scene) {
   o.fields = r.words(keys.fields, allowed, fields);
   if (scene.method.basis != BasisKind::linear &&
       std::find(o.fields.begin(), o.fields.end(), recovered) != o.fields.end())
-    r.fail(keys.fields, fmt::format("'{}' {}", recovered, recovery_is_linear));
+    r.fail(keys.fields,
+           fmt::format("'{}' {}{}", recovered, recovery_is_linear, linear_beside_setting(scene)));
   o.grid = r.read(keys.grid);
   o.checkpoint_minutes = r.read(keys.checkpoint_minutes);
   r.finish();

@@ -169,6 +169,8 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
     time_shapes.emplace_back();
     scene.tractions.push_back(read_traction(table, scene, scene.tractions.size(), time_shapes.back()));
   }
+  if (!document["method"]["basis"])
+    if (const auto why = unfit_setting(scene); !why.empty()) r.fail(keys.setting, why);
   read_method(r.table(keys.method), scene);
   const auto keeps_gradient = [](const BodySpec& b) { return b.material.law == MaterialLaw::hencky; };
   if (scene.method.volume_update != "determinant" &&
@@ -184,8 +186,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
   scene.removal = read_removal(r, keys.removal, scene);
   refuse_outflow_beside(r, scene);
   scene.output = read_output(r.table(keys.output), scene);
-  scene.compare =
-      read_comparison(r, keys.compare, scene.bodies.front().material, scene.method.basis, scene.more_norms);
+  scene.compare = read_comparison(r, keys.compare, scene.bodies.front().material, scene, scene.more_norms);
   check_comparison(scene, r);
   scene.published = read_published(r, keys.published, scene);
   r.finish();
