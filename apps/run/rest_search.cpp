@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "run/run_parts.hpp"
+#include "setup/cut_lattice.hpp"
 
 namespace vsb::app {
 
@@ -35,10 +36,11 @@ ExpectedEnd RestSearch::expected_end(long long last) const {
 std::string RestSearch::standing_text() const {
   const auto level = decay_.stands();
   if (!level) return "";
-  bool may_yield = false, whole = false;
+  bool may_yield = false, may_cut = false;
   for (const auto& body : scene_.bodies) {
     may_yield = may_yield || is_plastic(body.material.law);
-    whole = whole || (body.boundary == BoundaryBoxes::keep && !is_irregular(body));
+    may_cut = may_cut || (body.boundary == BoundaryBoxes::keep && !is_irregular(body) &&
+                          !scene_.grid.mapped() && cuts_boxes(scene_, body));
   }
   return fmt::format(
       ": the force ratio stands at {:.2e} since about step {}, so that more steps will hardly help; what "
@@ -46,7 +48,7 @@ std::string RestSearch::standing_text() const {
       "{}{}a larger time.until_static.force_ratio",
       level->ratio, level->since,
       may_yield || scene_.single_precision ? "" : "the static solver (--static), which takes no steps; ",
-      whole ? "body.boundary = \"cut\"; " : "");
+      may_cut ? "body.boundary = \"cut\"; " : "");
 }
 
 }  // namespace vsb::app

@@ -138,4 +138,18 @@ CutVolume for_each_lattice_share(const Scene& scene, const BodySpec& body, const
   return visitor.volume();
 }
 
+bool cuts_boxes(const Scene& scene, const BodySpec& body) {
+  constexpr double round_off = 1e-6;  // of a box
+  BodySpec as_cut = body;
+  as_cut.boundary = BoundaryBoxes::cut;
+  const UniformLattice lattice = uniform_lattice(scene.grid, body.lattice);
+  double box = 1;
+  for (size_t i = 0; i < static_cast<size_t>(scene.dimension); ++i) box *= lattice.spacing[i];
+  bool cuts = false;
+  const auto volume = for_each_lattice_share(
+      scene, as_cut, bounding_box(scene.grid, scene.dimension),
+      [&](const LatticeShare& share) { cuts = cuts || share.volume < (1 - round_off) * box; });
+  return cuts || volume.dropped > round_off * box;
+}
+
 }  // namespace vsb::app

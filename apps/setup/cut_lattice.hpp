@@ -32,4 +32,8 @@ struct LatticeShare {
 CutVolume for_each_lattice_share(const Scene& scene, const BodySpec& body, const AxisBox& limits,
                                  const std::function<void(const LatticeShare&)>& visit);
 
+/// Whether the surface of a body, or a face of the grid, runs through a box of its lattice: where not,
+/// cutting changes nothing. Of bodies on cell and uniform lattices of uniform grids.
+bool cuts_boxes(const Scene& scene, const BodySpec& body);
+
 }  // namespace vsb::app
