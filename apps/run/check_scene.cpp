@@ -23,6 +23,37 @@ double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
+/// Steps of the scene itself.
+struct TrialSteps {
+  long long steps = 0;  ///< those that were timed
+  double per_step = 0;  ///< s
+  std::string end;      ///< why there were no more, where the run itself would end there
+};
+/// The first one, which sorts, is not timed. Not more than a hundred: what a scene does in the long run, such
+/// as fly away, is not the question here.
+TrialSteps make_trial_steps(Simulation& simulation) {
+  TrialSteps trial;
+  const auto ends = [&](const std::string& why, const std::string& how) {
+    trial.end = why;
+    print_warnings({fmt::format("{}: the run ends there, {}", why, how)});
+  };
+  auto begin = Clock::now();
+  try {
+    simulation.advance(1);
+    begin = Clock::now();
+    do {
+      simulation.advance(1);
+      ++trial.steps;
+    } while (trial.steps < 100 && seconds_since(begin) < 0.2);
+  } catch (const LeftGrid& error) {
+    ends(error.what(), error.all ? "without a particle" : "with exit code 8");
+  } catch (const Diverged& error) {
+    ends(fmt::format("diverged {}", error.what()), "with exit code 3");
+  }
+  if (trial.steps > 0) trial.per_step = seconds_since(begin) / static_cast<double>(trial.steps);
+  return trial;
+}
+
 /// Of all particles together, along an axis.
 double longest_extent(Simulation& simulation) {
   Point low, high;
@@ -92,21 +123,16 @@ void check_scene(const Scene& scene, PlacedParticles* placed) {
   const double loaded = std::isfinite(settled) ? settled : 0.0;
   if (!scene.tractions.empty()) fmt::print("# initial state under the loads at {:.6g} s:\n", loaded);
   print_resultant(scene, simulation->balance_under_loads_at(loaded), "#   ");
-  // The rate is measured: a few steps of the scene itself, the first one (which sorts) left out. Not more
-  // than a hundred: what a scene does in the long run, such as fly away, is not the question here.
   const double extent = longest_extent(*simulation);
   const int particles = simulation->particle_count();
-  simulation->advance(1);
-  const auto begin = Clock::now();
-  long long made = 0;
-  do {
-    simulation->advance(1);
-    ++made;
-  } while (made < 100 && seconds_since(begin) < 0.2);
-  const double per_step = seconds_since(begin) / static_cast<double>(made);
-  fmt::print("# {:.3g} s per 1000 steps ({:.3g} ns per particle and step)\n", 1000 * per_step,
-             1e9 * per_step / particles);
-  print_end(scene, extent, per_step);
+  const auto trial = make_trial_steps(*simulation);
+  if (trial.steps > 0)
+    fmt::print("# {:.3g} s per 1000 steps ({:.3g} ns per particle and step)\n", 1000 * trial.per_step,
+               1e9 * trial.per_step / particles);
+  if (trial.end.empty())
+    print_end(scene, extent, trial.per_step);
+  else
+    fmt::print("# the run ends early: {}\n", trial.end);
   fmt::print("\n{}", scene.resolved);
 }
 
