@@ -68,8 +68,9 @@ int run_command(int argc, char** argv) {
       "Exit codes: 0 done, 2 bad usage or input, 3 diverged, 4 results cannot be read or written,\n"
       "5 interrupted, checkpoint written, 6 a study ran but missed an expectation, 7 not static after "
       "max_steps\n"
-      "(of until_static) or max_iterations (of static), 8 a healthy body left the grid: its last state is a "
-      "frame."};
+      "(of until_static) or max_iterations (of static), or at rest without one of its loads, 8 a healthy "
+      "body "
+      "left\nthe grid: its last state is a frame."};
   app.require_subcommand(1);
   app.failure_message(CLI::FailureMessage::help);
 

@@ -8,6 +8,8 @@
 #include <limits>
 
 #include "report/neighbour_advice.hpp"
+#include "report/spline_rest.hpp"
+#include "report/thin_bodies.hpp"
 #include "scene/read_body.hpp"
 #include "scene/read_volumetric.hpp"
 #include "scene/units.hpp"
@@ -223,6 +225,8 @@ std::vector<std::string> scene_advice(const Scene& scene) {
                       "stretches, and motions "
                       "that such particles do not resist remain; give particles_per_cell = 2 or more",
                       body.name, n));
+  for (auto& text : spline_rest_advice(scene)) advice.push_back(std::move(text));
+  for (auto& text : thin_body_advice(scene)) advice.push_back(std::move(text));
   if (!scene.method.averaged && scene.dimension > 1)
     for (const auto& body : scene.bodies)
       if (may_lock(body))

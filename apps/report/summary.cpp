@@ -218,7 +218,7 @@ std::string summary_json(const Scene& scene, const RunFigures& f) {
       {"provenance", provenance},
   };
   if (!f.tractions.empty()) summary.insert("tractions", traction_reports(f));
-  if (!f.state_hash.empty())  // the state has been looked at
+  if (!f.state_hash.empty() && f.particles > 0)  // the state has been looked at
     for (const auto& [name, value] : named(f.state, scene)) summary.insert(name, value);
   if (f.solution == Solution::balance)
     summary.insert("resultant", toml::table{{"load", f.share.load},
@@ -336,6 +336,10 @@ void print_report(const Scene& scene, const RunFigures& f) {
         "for\n",
         outflow_text(scene, f.outflow), f.outflow.mass_at_start, f.mass,
         std::abs(f.outflow.mass_at_start - f.mass - f.outflow.mass_gone) / f.outflow.mass_at_start);
+  if (f.particles == 0) {
+    fmt::print("no particle is left in the grid: there are no stresses, energies and resultants to tell\n");
+    return;
+  }
   const auto& b = f.balance;
   fmt::print("of the nodes: force ratio {:.2e}, energy ratio (kinetic to strain energy) {:.2e}\n",
              b.force_ratio, b.energy_ratio);

@@ -23,6 +23,9 @@ constexpr double closed_share = 0.5;
 /// The share of the load by which a resultant may differ from that of the exact surface.
 constexpr double unlike_share = 0.05;
 
+/// The share of the load below which nothing of it acts.
+constexpr double no_share = 1e-6;
+
 double length(const Point& v) {
   return std::hypot(v[0], v[1], v[2]);
 }
@@ -202,6 +205,30 @@ std::string TractionWatch::loss_of(const TractionState& now, const TractionState
         "unevenly: take method.basis = \"quadratic_bspline\", or nodes = \"all\"";
   return fmt::format("at step {}, time {:.6g} s: traction '{}' {}{}", simulation_.step(), simulation_.time(),
                      traction.name, what, why);
+}
+
+std::string idle_tractions(const Scene& scene, const std::vector<TractionState>& states) {
+  const auto box = bounding_box(scene.grid, scene.dimension);
+  std::string idle;
+  for (const auto& state : states) {
+    const auto& traction = scene.tractions[state.traction];
+    const double settled = traction.time.settled_at();
+    const bool wanted = largest_stress(traction.field, box.lower, box.upper) > 0 &&
+                        !(std::isfinite(settled) && traction.time(settled) == 0);
+    // The forces on a closed surface cancel.
+    const bool closed = length(state.exact_force) < closed_share * state.load;
+    const bool acts =
+        state.whole_cells + state.part_cells > 0 && (closed || length(state.force) > no_share * state.load);
+    if (!wanted || acts) continue;
+    idle += fmt::format(
+        "{}nothing acts of traction '{}', whose resultant at full load is ({}) N on the bodies' "
+        "surface at the start",
+        idle.empty() ? "" : "; ", traction.name, text(state.exact_force, scene.dimension));
+  }
+  if (idle.empty()) return idle;
+  return idle +
+         ": let its 'surface' reach the loaded edge, a cell beyond it on either side, or move with the "
+         "material (configuration = \"initial\")";
 }
 
 std::vector<std::string> resultant_advice(const Scene& scene, Simulation& simulation) {

@@ -50,4 +50,8 @@ class TractionWatch {
 /// its region ends beside an edge of a body, or within one.
 std::vector<std::string> resultant_advice(const Scene& scene, Simulation& simulation);
 
+/// The tractions of which nothing acts, though the scene has them act in the end, in words; empty where there
+/// is none. states: of the state that is to be judged.
+std::string idle_tractions(const Scene& scene, const std::vector<TractionState>& states);
+
 }  // namespace vsb::app

@@ -19,8 +19,9 @@ enum ExitCode {
   exit_files = 4,
   exit_interrupted = 5,
   exit_study_failed = 6,  ///< a study was run, but not all of its expectations are met
-  exit_not_static = 7,    ///< a run until static, or a static solution, came to its last step before it was
-  exit_left_grid = 8      ///< a healthy body left the grid; its last state is a frame
+  exit_not_static = 7,  ///< a run until static, or a static solution, came to its last step before it was, or
+                        ///< to rest without one of its loads
+  exit_left_grid = 8    ///< a healthy body left the grid; its last state is a frame
 };
 
 struct RunOptions {

@@ -8,15 +8,14 @@
 #include <cmath>
 
 #include "report/progress.hpp"
+#include "report/static_advice.hpp"
+#include "report/traction_watch.hpp"
 #include "run/interrupt.hpp"
 #include "run/run_parts.hpp"
 
 namespace vsb::app {
 
 namespace {
-
-/// Small strains: beyond this one the error of linear theory shows in the third digit.
-constexpr double small_strain = 5e-3;
 
 /// Refuses what only an explicit run can do.
 void refuse_moving_scenes(const Scene& scene) {
@@ -40,20 +39,14 @@ void refuse_moving_scenes(const Scene& scene) {
           body.where);
 }
 
-double largest_displacement(const ParticleReader& particles) {
-  double largest = 0;
-  particles.for_each_range(field::position | field::initial_position, [&](const Snapshot& s) {
-    for (const double u : s.displacement) largest = std::max(largest, std::abs(u));
-  });
-  return largest;
-}
-
 }  // namespace
 
 RunResult run_static(const Scene& scene, const RunOptions& options) {
   using Clock = std::chrono::steady_clock;
   refuse_moving_scenes(scene);
   const auto simulation = make_simulation(scene, options.placed);
+  if (const auto idle = idle_tractions(scene, simulation->traction_states()); !idle.empty())
+    throw SetupError("--static: the solution would be without a load of the scene: " + idle);
   Results results(options.directory, scene);
   const InterruptGuard guard;
   const bool reports = !options.quiet && !options.progress_only;
@@ -74,7 +67,7 @@ RunResult run_static(const Scene& scene, const RunOptions& options) {
   const auto solution =
       simulation->solve_static(loads_settled_at(scene), [&](int iteration, double residual) {
         if (progress.due()) progress.report_iteration(iteration, residual);
-        return !interrupt_requested();
+        return !(residual > regular_residual) && !interrupt_requested();
       });
   figures.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
   figures.iterations = solution.iterations;
@@ -85,6 +78,12 @@ RunResult run_static(const Scene& scene, const RunOptions& options) {
       fmt::print("interrupted at iteration {}; a static solution begins anew\n", solution.iterations);
     return {exit_interrupted, figures};
   }
+  if (solution.residual > regular_residual)
+    throw NotStatic(fmt::format(
+        "no static state: some motion strains no particle, and the loads drive it (the relative residual has "
+        "grown to {:.2g} by iteration {}): too few particles hold their cells' shape (2 per cell and "
+        "direction at least, and 3 across a body of one cell with B-splines)",
+        solution.residual, solution.iterations));
   if (!solution.converged)
     throw NotStatic(fmt::format(
         "not static after {} iterations of at most {} (relative residual {:.2e}, wanted {:.2e}): raise "
@@ -92,21 +91,8 @@ RunResult run_static(const Scene& scene, const RunOptions& options) {
         "direction at least)",
         solution.iterations, scene.static_solution.max_iterations, solution.residual,
         scene.static_solution.residual));
-  if (solution.largest_strain > small_strain && !options.progress_only)
-    fmt::print(
-        stderr,
-        "vsb: warning: strains up to {:.2g}: --static is for small strains, an explicit run follows large "
-        "ones\n",
-        solution.largest_strain);
-
-  if (const double moved = largest_displacement(*simulation->read_particles()),
-      h = shortest_edge(scene.grid, scene.dimension);
-      moved > 0.1 * h && !options.progress_only)
-    fmt::print(
-        stderr,
-        "vsb: warning: a particle is displaced by {:.3g} m, {:.2g} of a cell: too few particles hold their "
-        "cells' shape (2 per cell and direction at least), or the load is too large for --static\n",
-        moved, moved / h);
+  if (!options.progress_only)
+    print_warnings(static_advice(scene, *simulation->read_particles(), solution.largest_strain));
 
   results.begin(-1, !options.progress_only);
   write_frames(results, scene, *simulation);

@@ -175,7 +175,7 @@ void TimeLoop::left_grid(const LeftGrid& error) {
   if (collapsed(error.what())) return;
   left_ = error;
   if (reports_ && left_->all) fmt::print("{}; the run ends here\n", left_->what());
-  figures_.balance = simulation_.balance();
+  if (!left_->all) figures_.balance = simulation_.balance();
 }
 
 RunResult TimeLoop::end() {
@@ -196,6 +196,11 @@ RunResult TimeLoop::end() {
   else if (!collapsed_ && !left_ && !(figures_.steps == state_.resumed_step() && checkpoints.last_is_whole()))
     write_checkpoint();
   if (reports_) print_report(scene_, figures_);
+  if (found_static_ && !whole_stages)
+    if (const auto idle = idle_tractions(scene_, simulation_.traction_states()); !idle.empty()) {
+      if (!options_.progress_only) fmt::print(stderr, "vsb: at rest without its load: {}\n", idle);
+      return {exit_not_static, figures_};
+    }
   if (left_ || !scene_.time.until_static || found_static_ || whole_stages) return {exit_done, figures_};
   if (!options_.progress_only)
     fmt::print(stderr, "vsb: not static after max_steps = {} (force ratio {:.2e}, energy ratio {:.2e}){}\n",
@@ -223,8 +228,10 @@ void TimeLoop::enter_state() {
   }
   if (!left_) return;
   figures_.left_grid = left_->what();
-  if (left_->all) figures_.particles = 0;
-  if (left_->all) figures_.mass = 0;
+  if (!left_->all) return;
+  figures_.particles = 0;  // what was taken are figures of particles that are gone
+  figures_.mass = 0;
+  figures_.state = {};
 }
 
 void TimeLoop::tell(const std::vector<std::string>& warnings) {

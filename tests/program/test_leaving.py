@@ -175,6 +175,9 @@ class Outflow(ProgramTest):
         self.assertEqual((left["particles"], summary["particles"]), (16, 0))
         np.testing.assert_allclose([left["mass"], left["mass_in_grid"]], [1000, 0], atol=1e-9)
         self.assertEqual(len(last_fields(self.folder / "all")["id"]), 4)  # as they left
+        self.assertIn("no particle is left in the grid", done.stdout)
+        self.assertNotRegex(done.stdout, r"energy [\d(r]")
+        self.assertFalse({"kinetic_energy", "largest_displacement", "not_finite"} & summary.keys())
 
     def test_other_faces_still_hold_the_run(self):
         done = vsb("run", self.write(OUTFLOW), "--out", self.folder / "up", "--set", "body[0].velocity=[0.0,2.0]")
