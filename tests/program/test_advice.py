@@ -173,7 +173,8 @@ class Check(ProgramTest):
         self.assertLess(np.abs(last_fields(self.folder / "steps")["displacement"]).max(), 1e-12)
 
     def test_what_keeps_a_scene_from_the_accurate_setting(self):
-        graded = GOOD.replace("lower = [0.0, 0.0], upper = [4.0, 4.0], spacing = 0.5", "x = [0.0, 2.0, 4.0], y = [0.0, 2.0, 4.0]")
+        graded = GOOD.replace("lower = [0.0, 0.0], upper = [4.0, 4.0], spacing = 0.5",
+                              "x = [0.0, 1.0, 2.0, 3.0, 4.0], y = [0.0, 1.0, 2.0, 3.0, 4.0]")
         imposed = lambda how: GOOD.replace("pressure = 1e3", f'pressure = 1e3\nimposition = "{how}"')
         for text, why in ((graded, "grid.x"), ('precision = "float"\n' + GOOD, 'the scene has "float"'),
                           (imposed("nodal"), 'traction[0].imposition = "nodal"'),
