@@ -161,7 +161,7 @@ class Output(StaticTest):
         soft = ("--set", "body[0].material.youngs_modulus=1e6")
         done = vsb("run", self.write(BLOCK), "--static", "--out", self.folder / "soft", "--quiet", *soft)
         self.assertEqual(done.returncode, 0)
-        self.assertRegex(done.stderr, r"^vsb: warning: strains up to 0\.02\d*: --static is for small strains")
+        self.assertRegex(done.stderr, r"^vsb: warning: strains up to 0\.02\d*, rotations .*: --static is linear.* 2\.\d %")
         self.assertEqual(vsb("run", self.write(BLOCK), "--static", "--out", self.folder / "stiff", "--quiet").stderr, "")
 
     def test_a_checkpoint_is_not_discarded_without_a_word(self):
