@@ -72,7 +72,7 @@ void add_node_and_particle_updates(const Size& size) {
     auto s = make_started_scene<Dim, Real>(size);
     const auto run = [&] {
       update_stress(Exec(), s.state.particles, s.state.nodes, s.bodies, s.basis, s.options.volume_update,
-                    s.options.dt);
+                    s.options.position_velocity, s.options.dt);
     };
     const auto findings = check_update_stress(s, run);
     s = make_started_scene<Dim, Real>(size);

@@ -39,7 +39,14 @@ struct Packed {
           "vsb::move_lanes", detail::over_layers(Exec(), lanes),
           kernel::MoveLanes<true, Field, LinearElastic<Real>, DeterminantVolume, Dim, Real, Device>{
               detail::loaded_lanes(lanes),
-              {m.lanes, m.nodes, m.grid, column.material, {}, m.migrating},
+              {m.lanes,
+               m.nodes,
+               m.grid,
+               column.material,
+               {},
+               m.migrating,
+               0,
+               column.options.position_velocity},
               field,
               true});
     });
@@ -50,9 +57,10 @@ struct Packed {
   void run_nodes() {
     const auto& m = lanes.memory;
     const auto& o = column.options;
-    Kokkos::parallel_for("vsb::update_lane_nodes", over_node_groups(),
-                         kernel::UpdateLaneNodes<Dim, Real, Device>{
-                             {m.nodes}, o.gravity, m.grid.inverse_spacing, o.damping, o.dt, false});
+    Kokkos::parallel_for(
+        "vsb::update_lane_nodes", over_node_groups(),
+        kernel::UpdateLaneNodes<Dim, Real, Device>{
+            {m.nodes}, o.gravity, m.grid.inverse_spacing, o.damping, o.dt, false, o.position_velocity});
   }
   void run_remap() {
     const auto& m = lanes.memory;

@@ -50,6 +50,7 @@ struct StepOptions {
                                         ///< number of threads
   /// Volumetric::averaged: against volumetric locking, see physics/mean_divergence.hpp.
   Volumetric volumetric = Volumetric::full;
+  PositionVelocity position_velocity = PositionVelocity::strain;  ///< by which particles move
 };
 
 /// Refuses options with which no step can be made.
@@ -114,9 +115,9 @@ int step(const Exec& exec, State<Dim, Real, Device>& s, const std::vector<Body<R
   if (options.volumetric == Volumetric::averaged)
     average_divergence(exec, s.particles, s.occupancy.bins, s.nodes.remapped_velocity, bodies, basis,
                        s.mean_divergence, options.scatter);
-  update_stress(exec, s.particles, s.nodes, bodies, basis, options.volume_update, options.dt,
-                s.mean_divergence);
-  move_surface_points(exec, s.surface, s.particles, s.nodes, basis, options.dt);
+  update_stress(exec, s.particles, s.nodes, bodies, basis, options.volume_update, options.position_velocity,
+                options.dt, s.mean_divergence);
+  move_surface_points(exec, s.surface, s.particles, s.nodes, basis, options.position_velocity, options.dt);
   return -1;
 }
 

@@ -17,6 +17,7 @@
 #pragma once
 
 #include <vsb/views/masks.hpp>
+#include <vsb/views/nodes.hpp>
 #include <vsb/views/pack.hpp>
 #include <vsb/views/particles.hpp>
 #include <vsb/views/static_for.hpp>

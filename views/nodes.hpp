@@ -8,6 +8,13 @@
 
 namespace vsb {
 
+/// The nodal velocity by which particles and surface points move.
+enum class PositionVelocity {
+  strain,  ///< v*_I of the re-map, by which they strain too
+  grid  ///< v_I before it, as in the paper: positions and strains part, and where sigma - sbar is in tension
+        ///< the difference feeds energy into a body
+};
+
 /// Nodal fields, one row per node. Fields that particles scatter together are stored together, in rows of
 /// (mass, momentum, force); accessors give them their names.
 template <int Dim, class Real, class Device>
@@ -26,6 +33,10 @@ struct Nodes {
                              ///< momentum)
   Kokkos::View<ComponentMask*, Device> fixed_components;  ///< [node]: prescribed velocity components
 
+  /// The velocity that moves particles and surface points.
+  KOKKOS_FUNCTION const Fields& velocity_for(PositionVelocity which) const {
+    return which == PositionVelocity::grid ? velocity : remapped_velocity;
+  }
   /// Number of nodes.
   KOKKOS_FUNCTION int count() const { return static_cast<int>(sums.extent(0)); }
   /// The mass of a node in kg (kg/m^2 in 1D, kg/m in 2D); Eq. (10).

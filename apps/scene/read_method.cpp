@@ -3,7 +3,7 @@
 
 namespace vsb::app {
 
-void read_method(TableReader r, Scene& scene) {
+void read_method(TableReader r, bool as_in_paper, Scene& scene) {
   const auto& keys = method_keys;
   MethodSpec& m = scene.method;
   read_basis(r, keys.basis, scene);
@@ -16,6 +16,7 @@ void read_method(TableReader r, Scene& scene) {
   m.void_filter = r.read(keys.void_filter);
   read_moment_fit(r, keys.moment_fit, scene);
   read_volumetric(r, keys.volumetric, scene);
+  m.moves_by_grid = r.read<bool>(keys.position_velocity, as_in_paper);
   m.allow_particles_on_grid_lines = r.read(keys.allow_particles_on_grid_lines);
   r.finish();
 }

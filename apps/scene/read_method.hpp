@@ -51,13 +51,19 @@ struct MethodKeys : KeyTable {
       {{"full", false}, {"averaged", true, "the mean over neighbours: no locking near incompressibility"}},
       in_words("`\"averaged\"` where a Poisson's ratio is 0.4 or more"),
       "the divergence by which particles strain"};
+  ChoiceKeyOf<bool> position_velocity{*this,
+                                      "position_velocity",
+                                      {{"strain", false, "the re-mapped one, which strains them too"},
+                                       {"grid", true, "that of the paper's step"}},
+                                      in_words("`\"grid\"` with `setting = \"paper\"`, else `\"strain\"`"),
+                                      "the nodal velocity that moves the particles"};
   BooleanKey allow_particles_on_grid_lines{
       *this, "allow_particles_on_grid_lines", false,
       "takes particles that lie on the faces of cells, whose cell is a matter of round-off"};
 };
 inline const MethodKeys method_keys;
 
-/// Everything before it in the scene must be known.
-void read_method(TableReader r, Scene& scene);
+/// Everything before it in the scene must be known; as_in_paper: the scene says setting = "paper".
+void read_method(TableReader r, bool as_in_paper, Scene& scene);
 
 }  // namespace vsb::app

@@ -171,7 +171,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
   }
   if (!document["method"]["basis"])
     if (const auto why = unfit_setting(scene); !why.empty()) r.fail(keys.setting, why);
-  read_method(r.table(keys.method), scene);
+  read_method(r.table(keys.method), r.has(keys.setting) && scene.setting == Setting::paper, scene);
   const auto keeps_gradient = [](const BodySpec& b) { return b.material.law == MaterialLaw::hencky; };
   if (scene.method.volume_update != "determinant" &&
       std::any_of(scene.bodies.begin(), scene.bodies.end(), keeps_gradient))

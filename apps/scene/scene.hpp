@@ -99,12 +99,13 @@ struct MethodSpec {
   std::array<double, 3> gimp_half_width{};  ///< of a particle, per direction, in cells; of uGIMP
   double damping = 0;
   std::string volume_update, scatter;
-  std::string engine;         ///< auto, cell_lanes or particles, see engine/lane_engine.hpp
-  int cell_gauss_points = 1;  ///< of the original virtual stress boundary method, per direction
-  double fill_criterion = 0;  ///< tau, see kernels/boundary/mark_underfilled_cells.hpp; 0: off
-  bool void_filter = false;   ///< see kernels/boundary/filter_voids.hpp
-  bool moment_fit = false;    ///< see setup/moment_fit.hpp
-  bool averaged = false;      ///< particles strain by a mean divergence, see physics/mean_divergence.hpp
+  std::string engine;          ///< auto, cell_lanes or particles, see engine/lane_engine.hpp
+  int cell_gauss_points = 1;   ///< of the original virtual stress boundary method, per direction
+  double fill_criterion = 0;   ///< tau, see kernels/boundary/mark_underfilled_cells.hpp; 0: off
+  bool void_filter = false;    ///< see kernels/boundary/filter_voids.hpp
+  bool moment_fit = false;     ///< see setup/moment_fit.hpp
+  bool moves_by_grid = false;  ///< positions follow v_I, not v*_I: PositionVelocity
+  bool averaged = false;       ///< particles strain by a mean divergence, see physics/mean_divergence.hpp
   bool allow_particles_on_grid_lines = false;
 };
 

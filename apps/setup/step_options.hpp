@@ -18,6 +18,7 @@ StepOptions<Dim, Real> step_options(const Scene& scene) {
   options.scatter = scene.method.scatter == "atomic"       ? Scatter::atomic
                     : scene.method.scatter == "duplicated" ? Scatter::duplicated
                                                            : Scatter::gathered;
+  options.position_velocity = scene.method.moves_by_grid ? PositionVelocity::grid : PositionVelocity::strain;
   if (scene.method.averaged) options.volumetric = Volumetric::averaged;
   return options;
 }

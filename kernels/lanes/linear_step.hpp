@@ -334,7 +334,8 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
                                                                   m.grid.inverse_spacing,
                                                                   options.damping,
                                                                   options.dt,
-                                                                  m.lanes.remaps_by_mass_matrix()});
+                                                                  m.lanes.remaps_by_mass_matrix(),
+                                                                  options.position_velocity});
   if (m.lanes.remaps_by_mass_matrix())
     Kokkos::parallel_for("vsb::remap_lanes", detail::over_layers(exec, s),
                          kernel::RemapLanes<Dim, Real, Device>{m.lanes, m.nodes});
@@ -351,11 +352,11 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
         kernel::MoveLanes<decltype(equal_spacing)::value, Field, Material, Volume, Dim, Real, Device>{
             detail::loaded_lanes(s),
             {m.lanes, m.nodes, m.grid, material, volume, m.migrating,
-             detail::lane_share<Dim>(material, options)},
+             detail::lane_share<Dim>(material, options), options.position_velocity},
             swept,
             and_sum});
   });
-  move_surface_points(exec, m, s.surface);
+  move_surface_points(exec, m, s.surface, options.position_velocity);
   return detail::note_step_end(s, detail::finish_migration(exec, s, swept, and_sum));
 }
 

@@ -163,11 +163,16 @@ int lane_step(const Exec& exec, SplineLaneState<Dim, Real, Device>& s, const Mat
   };
 
   fold(false);
-  Kokkos::parallel_for(
-      "vsb::update_lane_nodes", over_node_groups,
-      kernel::UpdateLaneNodes<Dim, Real, Device, 3>{
-          {m.nodes}, options.gravity, m.grid.inverse_spacing, options.damping, options.dt, true});
-  mirror(m.nodes.increment_column, 2);  // and displacement_column
+  Kokkos::parallel_for("vsb::update_lane_nodes", over_node_groups,
+                       kernel::UpdateLaneNodes<Dim, Real, Device, 3>{{m.nodes},
+                                                                     options.gravity,
+                                                                     m.grid.inverse_spacing,
+                                                                     options.damping,
+                                                                     options.dt,
+                                                                     true,
+                                                                     options.position_velocity});
+  // With PositionVelocity::grid displacement_column too.
+  mirror(m.nodes.increment_column, options.position_velocity == PositionVelocity::grid ? 2 : 1);
   Kokkos::parallel_for("vsb::accelerate_spline_lanes", detail::over_layers(exec, s),
                        kernel::AccelerateSplineLanes<Dim, Real, Device>{m.lanes, m.nodes});
   fold(true);
@@ -182,7 +187,9 @@ int lane_step(const Exec& exec, SplineLaneState<Dim, Real, Device>& s, const Mat
       "vsb::move_spline_lanes", detail::over_layers(exec, s),
       kernel::MoveSplineLanes<Field, Material, Volume, Dim, Real, Device>{
           detail::loaded_lanes(s),
-          {{m.lanes, m.nodes, m.grid, material, volume, m.migrating, beta}, s.crossed, m.walls},
+          {{m.lanes, m.nodes, m.grid, material, volume, m.migrating, beta, options.position_velocity},
+           s.crossed,
+           m.walls},
           next_virtual_stress,
           summed});
   return detail::note_step_end(s, detail::finish_migration(exec, s, next_virtual_stress, summed));

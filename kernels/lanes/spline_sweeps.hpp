@@ -80,6 +80,7 @@ struct MoveSplineGroup : MoveGroup<false, Material, Volume, Dim, Real, Device> {
   using Base::grid;
   using Base::lanes;
   using Base::nodes;
+  using Base::position_velocity;
   using Base::volume;
   using typename Base::P;
   Kokkos::View<int*, Device> crossed;  ///< [layer]: 1 where a particle went from corner to corner
@@ -126,8 +127,11 @@ struct MoveSplineGroup : MoveGroup<false, Material, Volume, Dim, Real, Device> {
     const auto& stencil = lanes.stencils(lanes.number_of(group));
     QuadraticPolynomial<Dim, P> dx[Dim], u[Dim];
     static_for<Dim>([&](auto i) VSB_UNROLLED {
-      coefficients_of(nodes, nodes.displacement_column + i, stencil, dx[i]);
       coefficients_of(nodes, nodes.remapped_column + i, stencil, u[i]);
+      if (position_velocity == PositionVelocity::grid)
+        coefficients_of(nodes, nodes.displacement_column + i, stencil, dx[i]);
+      else
+        dx[i] = P(grid.inverse_spacing[i] * grid.spacing[0]) * u[i];
     });
     const CellRange range = range_of(group);
     CentreRange<Dim, P> centres;

@@ -110,6 +110,7 @@ struct MoveLaneSurfacePoints {
   LaneNodes<Dim, Real, Device> nodes;
   LaneSurfacePoints<Dim, Real, Device> points;
   UniformGrid<Dim, Real> grid;
+  PositionVelocity position_velocity;
 
   KOKKOS_FUNCTION void operator()(int run, int& crossing) const {
     const int cell = points.run_cell(run);
@@ -117,8 +118,11 @@ struct MoveLaneSurfacePoints {
     lanes.nodes_of_cell(cell / lanes.box.cells[0], cell % lanes.box.cells[0], node);
     CellPolynomial<Dim, Real> dx[Dim], u[Dim];
     for (int i = 0; i < Dim; ++i) {
-      gather(nodes.displacement_column + i, node, dx[i]);
       gather(nodes.remapped_column + i, node, u[i]);
+      if (position_velocity == PositionVelocity::grid)
+        gather(nodes.displacement_column + i, node, dx[i]);
+      else
+        dx[i] = grid.inverse_spacing[i] * grid.spacing[0] * u[i];
       coefficients_from_nodes<Dim>(u[i]);
     }
     for (int n = points.run_first(run); n < points.run_first(run + 1); ++n)
@@ -263,13 +267,14 @@ int sort_surface_points(const Exec& exec, const LaneMemory<Dim, Real, Device>& m
 /// particles may have been moved already. Waits for the device. Does nothing without points.
 template <class Exec, int Dim, class Real, class Device>
 void move_surface_points(const Exec& exec, const LaneMemory<Dim, Real, Device>& m,
-                         LaneSurfacePoints<Dim, Real, Device>& points) {
+                         LaneSurfacePoints<Dim, Real, Device>& points, PositionVelocity position_velocity) {
   if (points.count() == 0) return;
   sort_surface_points(exec, m, points);
   int crossing = 0;
-  Kokkos::parallel_reduce("vsb::move_lane_surface", Kokkos::RangePolicy<Exec>(exec, 0, points.runs),
-                          kernel::MoveLaneSurfacePoints<Dim, Real, Device>{m.lanes, m.nodes, points, m.grid},
-                          crossing);
+  Kokkos::parallel_reduce(
+      "vsb::move_lane_surface", Kokkos::RangePolicy<Exec>(exec, 0, points.runs),
+      kernel::MoveLaneSurfacePoints<Dim, Real, Device>{m.lanes, m.nodes, points, m.grid, position_velocity},
+      crossing);
   exec.fence();
   if (crossing > 0) points.sorted = false;
 }

@@ -142,6 +142,7 @@ struct MoveGroup {
   Volume volume;
   MigratingParticles<Dim, Real, Device> migrating;
   Real beta = 0;  ///< share of the divergence that a mean replaces (physics/mean_divergence.hpp)
+  PositionVelocity position_velocity = PositionVelocity::strain;
 
   KOKKOS_FORCEINLINE_FUNCTION void operator()(const LaneGroup<Dim>& group, int layer) const {
     if (beta > Real(0))
@@ -157,8 +158,12 @@ struct MoveGroup {
     Vector<(1 << Dim), P> dx[Dim];
     CellPolynomial<Dim, P> u[Dim];
     static_for<Dim>([&](auto i) VSB_UNROLLED {
-      values_at_corners(nodes, nodes.displacement_column + i, group, dx[i]);
-      coefficients_of(nodes, nodes.remapped_column + i, group, u[i]);
+      values_at_corners(nodes, nodes.remapped_column + i, group, u[i]);
+      if (position_velocity == PositionVelocity::grid)
+        values_at_corners(nodes, nodes.displacement_column + i, group, dx[i]);
+      else
+        dx[i] = EqualSpacing ? u[i] : P(grid.inverse_spacing[i] * grid.spacing[0]) * u[i];
+      coefficients_from_nodes<Dim>(u[i]);
     });
     for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
       const auto xi = lanes.load_xi(entry);

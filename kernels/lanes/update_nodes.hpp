@@ -2,8 +2,8 @@
 /// \file
 /// The equation of motion at the nodes of cell lanes, Eq. (9) (see kernels/particles/update_nodes.hpp), a
 /// node group each call:
-///   first   v_I = p_I / m_I,  f_I <- damped(f_I + m_I g),  a_I = f_I / m_I;  stores dt a_I, and
-///           dt (v_I + dt a_I) in cells;
+///   first   v_I = p_I / m_I,  f_I <- damped(f_I + m_I g),  a_I = f_I / m_I;  stores dt a_I, and,
+///           for PositionVelocity::grid, dt (v_I + dt a_I) in cells;
 ///   second  v*_I = p*_I / m_I, with the momentum p*_I of the re-map;  stores dt v*_I in cells.
 /// Components prescribed at a node are zero. Node groups without mass are skipped; a moving body has some
 /// ahead of it. The sums are set to zero, so that the next sweep can add to them.
@@ -57,7 +57,8 @@ struct UpdateLaneNodes : LaneNodeRows<Dim, Real, Device, Planes> {
   Vector<Dim, Real> gravity;          ///< m/s^2
   Vector<Dim, Real> inverse_spacing;  ///< 1/m
   Real damping, dt;
-  bool keep_momentum;  ///< whether the re-map adds to it
+  bool keep_momentum;                  ///< whether the re-map adds to it
+  PositionVelocity position_velocity;  ///< grid: the displacement by v_I is stored too
 
   KOKKOS_FUNCTION void operator()(int node_group) const {
     const int node = node_group * P::width;
@@ -71,8 +72,9 @@ struct UpdateLaneNodes : LaneNodeRows<Dim, Real, Device, Planes> {
       if (!keep_momentum) this->clear(1 + i, node);
       const P f = this->take_sum(1 + Dim + i, node) + m * P(gravity[i]);
       const P dv = cundall_damped(f, v, P(damping)) * inverse_mass * P(dt);
-      const P dx = (v + dv) * P(dt * inverse_spacing[i]);
       this->free_component(dv, node_group, i).store(nodes.at(nodes.increment_column + i, node));
+      if (position_velocity == PositionVelocity::strain) return;
+      const P dx = (v + dv) * P(dt * inverse_spacing[i]);
       this->free_component(dx, node_group, i).store(nodes.at(nodes.displacement_column + i, node));
     });
   }

@@ -67,6 +67,7 @@ struct MoveSurfacePoint {
   Particles<Dim, Real, Device> particles;
   Nodes<Dim, Real, Device> nodes;
   Basis basis;
+  PositionVelocity position_velocity;
   Real dt;  ///< s
 
   KOKKOS_FUNCTION void operator()(int b) const {
@@ -76,7 +77,7 @@ struct MoveSurfacePoint {
     const auto shape = basis.shape(x);
     const auto area =
         cofactor(deformation_increment(shape.gradient(nodes.remapped_velocity), dt)) * points.area_of(b);
-    const auto v = shape.interpolate(nodes.velocity);
+    const auto v = shape.interpolate(nodes.velocity_for(position_velocity));
     for (int i = 0; i < Dim; ++i) {
       points.area(b, i) = area[i];
       points.position(b, i) = carrier == carried_by_grid ? x[i] + dt * v[i] : particles.position(carrier, i);
@@ -109,11 +110,11 @@ int add_surface_tractions(const Exec& exec, SurfacePoints<Dim, Real, Device>& po
 template <class Exec, class Basis, int Dim, class Real, class Device>
 void move_surface_points(const Exec& exec, const SurfacePoints<Dim, Real, Device>& points,
                          const Particles<Dim, Real, Device>& particles, const Nodes<Dim, Real, Device>& nodes,
-                         const Basis& basis, Real dt) {
+                         const Basis& basis, PositionVelocity position_velocity, Real dt) {
   if (points.count() == 0) return;
-  Kokkos::parallel_for(
-      "vsb::move_surface_points", Kokkos::RangePolicy<Exec>(exec, 0, points.count()),
-      kernel::MoveSurfacePoint<Basis, Dim, Real, Device>{points, particles, nodes, basis, dt});
+  Kokkos::parallel_for("vsb::move_surface_points", Kokkos::RangePolicy<Exec>(exec, 0, points.count()),
+                       kernel::MoveSurfacePoint<Basis, Dim, Real, Device>{points, particles, nodes, basis,
+                                                                          position_velocity, dt});
 }
 
 }  // namespace vsb

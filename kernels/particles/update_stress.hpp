@@ -2,9 +2,9 @@
 /// \file
 /// The end of the step on the particles, with the basis functions at the old positions:
 ///   L = sum_I v*_I (x) grad N_Ip,   sigma <- material(sigma, L dt),
-///   V <- V det(I + dt L) or V exp(dt tr L),   x_p <- x_p + dt sum_I N_Ip v_I,
-/// v_I being the velocity before the re-map and v*_I that after it. Against volumetric locking a mean
-/// replaces the divergence of L (physics/mean_divergence.hpp).
+///   V <- V det(I + dt L) or V exp(dt tr L),   x_p <- x_p + dt sum_I N_Ip v*_I,
+/// v*_I being the re-mapped velocity; PositionVelocity::grid moves by v_I, the velocity before the re-map.
+/// Against volumetric locking a mean replaces the divergence of L (physics/mean_divergence.hpp).
 ///
 /// Reads both nodal velocities and the mean divergence; writes positions, stresses and volumes, and the state
 /// of a material that has one.
@@ -29,6 +29,7 @@ struct UpdateStress {
   Basis basis;
   Material material;
   Volume volume;
+  PositionVelocity position_velocity;
   Real dt;                                                   ///< s
   int state_offset = 0;                                      ///< of Body
   typename MeanDivergence<Real, Device>::Numbers mean = {};  ///< [particle]: thetabar, where beta is not 0
@@ -39,7 +40,7 @@ struct UpdateStress {
     const auto shape = basis.shape(x);
     auto L = shape.gradient(nodes.remapped_velocity);
     if (beta > Real(0)) L = with_mean_divergence(L, mean(p), beta);
-    const auto v = shape.interpolate(nodes.velocity);
+    const auto v = shape.interpolate(nodes.velocity_for(position_velocity));
     const auto sigma = advance(p, L);
     for (int c = 0; c < SymmetricTensor<Dim, Real>::size; ++c) particles.cauchy_stress(p, c) = sigma[c];
     particles.volume(p) = volume(particles.volume(p), L, dt);
@@ -117,8 +118,8 @@ void check_bodies(const std::vector<Body<Real>>& bodies, int particles) {
 template <class Exec, class Basis, int Dim, class Real, class Device>
 void update_stress(const Exec& exec, const Particles<Dim, Real, Device>& particles,
                    const Nodes<Dim, Real, Device>& nodes, const std::vector<Body<Real>>& bodies,
-                   const Basis& basis, const VolumeUpdate& volume_update, Real dt,
-                   const MeanDivergence<Real, Device>& mean = {}) {
+                   const Basis& basis, const VolumeUpdate& volume_update, PositionVelocity position_velocity,
+                   Real dt, const MeanDivergence<Real, Device>& mean = {}) {
   for (const auto& body : bodies) {
     check_material_state(particles, body);
     std::visit(
@@ -126,8 +127,8 @@ void update_stress(const Exec& exec, const Particles<Dim, Real, Device>& particl
           using Functor = kernel::UpdateStress<Basis, std::decay_t<decltype(material)>,
                                                std::decay_t<decltype(volume)>, Dim, Real, Device>;
           Kokkos::parallel_for("vsb::update_stress", Kokkos::RangePolicy<Exec>(exec, body.first, body.last),
-                               Functor{particles, nodes, basis, material, volume, dt, body.state_offset,
-                                       mean.of_particle, share_of<Dim>(mean, material)});
+                               Functor{particles, nodes, basis, material, volume, position_velocity, dt,
+                                       body.state_offset, mean.of_particle, share_of<Dim>(mean, material)});
         },
         body.material, volume_update);
   }

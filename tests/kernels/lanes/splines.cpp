@@ -35,6 +35,12 @@ TEMPLATE_TEST_CASE_SIG("splines: free bodies", "", ((int Dim, typename Real), Di
   check_free_bodies<Dim, Real, Engines<Dim, Real>>();
 }
 
+TEMPLATE_TEST_CASE_SIG("splines: positions by the velocity before the re-map", "",
+                       ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (3, double),
+                       (2, float)) {
+  check_grid_velocity<Dim, Real, Engines<Dim, Real>>();
+}
+
 TEMPLATE_TEST_CASE_SIG("splines: particles next to the faces of their cells", "",
                        ((int Dim, typename Real), Dim, Real), (2, double), (3, double), (2, float)) {
   check_slivers<Dim, Real, Engines<Dim, Real>>();

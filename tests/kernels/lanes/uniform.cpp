@@ -36,6 +36,12 @@ TEMPLATE_TEST_CASE_SIG("free bodies", "", ((int Dim, typename Real), Dim, Real),
   check_free_bodies<Dim, Real, BothEngines<Dim, Real>>();
 }
 
+TEMPLATE_TEST_CASE_SIG("positions by the velocity before the re-map", "",
+                       ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (3, double),
+                       (2, float)) {
+  check_grid_velocity<Dim, Real, BothEngines<Dim, Real>>();
+}
+
 TEMPLATE_TEST_CASE_SIG("particles next to the faces of their cells", "",
                        ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (3, double),
                        (2, float), (3, float)) {

@@ -198,16 +198,17 @@ TEST_CASE("GridToParticles and the re-map") {
 }
 
 TEST_CASE("UpdateStress") {
+  const auto position_velocity = GENERATE(PositionVelocity::strain, PositionVelocity::grid);
   const auto particles = particle_1d();
   const auto nodes = allocate_nodes<1, double, Host>(2);
-  nodes.velocity(0, 0) = 4;  // moves the particle: 3/4 of 4 + 1/4 of 8
+  nodes.velocity(0, 0) = 4;  // 3/4 of 4 + 1/4 of 8
   nodes.velocity(1, 0) = 8;
-  nodes.remapped_velocity(0, 0) = 1;  // strains it: L = (1.5 - 1) / 2
+  nodes.remapped_velocity(0, 0) = 1;  // 3/4 of 1 + 1/4 of 1.5; L = (1.5 - 1) / 2
   nodes.remapped_velocity(1, 0) = 1.5;
   const LinearElastic<double> material{200, 100};
   kernel::UpdateStress<LinearBasis<1, double>, LinearElastic<double>, DeterminantVolume, 1, double, Host>{
-      particles, nodes, cell_1d, material, {}, 0.5}(0);
-  CHECK(particles.position(0, 0) == 1.5 + 0.5 * 5);
+      particles, nodes, cell_1d, material, {}, position_velocity, 0.5}(0);
+  CHECK(particles.position(0, 0) == 1.5 + 0.5 * (position_velocity == PositionVelocity::grid ? 5 : 1.125));
   CHECK(particles.volume(0) == 2 * 1.125);
   CHECK(particles.cauchy_stress(0, 0) == 10 + 400 * 0.125);
   CHECK(particles.cauchy_stress(0, 1) == 1000 + 200 * 0.125);

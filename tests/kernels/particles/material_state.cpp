@@ -37,7 +37,8 @@ struct Sheared {
     });
   }
   void update(const std::vector<Body<double>>& bodies, double dt) {
-    update_stress(Exec(), block.particles, nodes, bodies, basis, DeterminantVolume{}, dt);
+    update_stress(Exec(), block.particles, nodes, bodies, basis, DeterminantVolume{},
+                  PositionVelocity::strain, dt);
   }
 };
 

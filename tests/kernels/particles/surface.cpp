@@ -151,7 +151,7 @@ TEMPLATE_TEST_CASE_SIG("areas turn and stretch with the material", "", ((int Dim
     const auto t1 = cross(a, u), t2 = cross(a, t1);  // t1 x t2 = |t1|^2 a
     expected = (1 / dot(t1, t1)) * cross(F(t1), F(t2));
   }
-  move_surface_points(Exec(), points, block.particles, nodes, basis, dt);
+  move_surface_points(Exec(), points, block.particles, nodes, basis, PositionVelocity::strain, dt);
   const auto p = read(block);
   for (int i = 0; i < Dim; ++i) {
     CHECK_THAT(row(points.area, 0)[i], WithinAbs(expected[i], 1e-14));

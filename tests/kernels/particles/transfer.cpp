@@ -198,8 +198,9 @@ TEMPLATE_TEST_CASE_SIG("a linear velocity field is seen exactly by every particl
   const Real dt = Real(0.125);
   using Functor = kernel::UpdateStress<LinearBasis<Dim, Real>, ReportGradient<Dim - 1>, ExponentialVolume,
                                        Dim, Real, Device>;
-  Kokkos::parallel_for("vsb::test", Kokkos::RangePolicy<Exec>(0, count),
-                       Functor{setup.state.particles, setup.state.nodes, setup.basis, {}, {}, dt});
+  Kokkos::parallel_for(
+      "vsb::test", Kokkos::RangePolicy<Exec>(0, count),
+      Functor{setup.state.particles, setup.state.nodes, setup.basis, {}, {}, PositionVelocity::strain, dt});
   const auto particles = read(setup.block);
   double trace = 0, worst_L = 0, worst_x = 0, worst_V = 0;
   for (int i = 0; i < Dim; ++i) trace += A[i][i];
@@ -276,7 +277,7 @@ TEST_CASE("bodies keep to their particles and their materials") {
   const std::vector<Body<double>> bodies{{1, 3, LinearElastic<double>{0, 50}},
                                          {3, 4, LinearElastic<double>{0, 500}}};
   update_stress(Exec(), setup.state.particles, setup.state.nodes, bodies, setup.basis, DeterminantVolume{},
-                0.5);
+                PositionVelocity::strain, 0.5);
   const auto particles = read(block);
   const double stress[] = {0, 50, 50, 500, 0}, volume[] = {1, 1.5, 1.5, 1.5, 1};
   for (int p = 0; p < 5; ++p) {
@@ -284,6 +285,6 @@ TEST_CASE("bodies keep to their particles and their materials") {
     CHECK(particles.volume(p) == volume[p]);
   }
   update_stress(Exec(), setup.state.particles, setup.state.nodes, bodies, setup.basis, ExponentialVolume{},
-                0.5);
+                PositionVelocity::strain, 0.5);
   CHECK_THAT(read(block).volume(1), WithinRel(1.5 * std::exp(0.5), 1e-15));
 }
