@@ -5,11 +5,13 @@
 ///      f_I = -sum_p V_p sigma_p . grad N_Ip with the virtual stress (kernels/lanes/sums.hpp);
 ///   B  FLIP, v_p <- v_p + dt sum_I N_Ip a_I, and the momentum of the re-map, p*_I = sum_p N_Ip m_p v_p;
 ///   C  L = sum_I v*_I (x) grad N_Ip,  sigma <- material(sigma, L dt),
-///      V <- V det(I + dt L) or V exp(dt tr L),  x_p <- x_p + dt sum_I N_Ip v_I.
+///      V <- V det(I + dt L) or V exp(dt tr L),  x_p <- x_p + dt sum_I N_Ip v*_I.
 ///      Particles that leave their cell go to the layer's list of migrating particles.
 /// C of a step and A of the next one are one sweep: a particle is read and written once for both.
 ///
-/// The nodes store dt a, dt v in cells and dt v* in cells, so that the particles only interpolate.
+/// With PositionVelocity::grid particles move by v_I, as in the paper.
+/// The nodes store dt a, dt v* in cells and, for PositionVelocity::grid, dt v in cells, so that the particles
+/// only interpolate.
 ///
 /// Against volumetric locking the mean divergence of a cell replaces the divergence of L
 /// (physics/mean_divergence.hpp). C sums the particles' volumes first to find it.
