@@ -63,7 +63,7 @@ void add_node_and_particle_updates(const Size& size) {
   add("grid_to_particles" + scene, [=](benchmark::State& state) {
     auto s = make_started_scene<Dim, Real>(size);
     const auto run = [&] {
-      grid_to_particles(Exec(), s.state.particles, s.state.nodes, s.basis, s.options.dt);
+      grid_to_particles(Exec(), s.state.particles, s.state.nodes, s.basis, s.options.pic, s.options.dt);
     };
     time(state, check_velocity_gain(s, run), s.state.particles.count(),
          Traffic<Dim, Real>(s).grid_to_particles(), run);

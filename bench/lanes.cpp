@@ -29,7 +29,7 @@ struct Packed {
   void run_accelerate() {
     const auto& m = lanes.memory;
     Kokkos::parallel_for("vsb::accelerate_lanes", detail::over_layers(Exec(), lanes),
-                         kernel::AccelerateLanes<Dim, Real, Device>{m.lanes, m.nodes});
+                         kernel::AccelerateLanes<Dim, Real, Device>{m.lanes, m.nodes, column.options.pic});
   }
   void run_move() {
     const auto& m = lanes.memory;
@@ -46,7 +46,8 @@ struct Packed {
                {},
                m.migrating,
                0,
-               column.options.position_velocity},
+               column.options.position_velocity,
+               column.options.pic},
               field,
               true});
     });
@@ -57,10 +58,15 @@ struct Packed {
   void run_nodes() {
     const auto& m = lanes.memory;
     const auto& o = column.options;
-    Kokkos::parallel_for(
-        "vsb::update_lane_nodes", over_node_groups(),
-        kernel::UpdateLaneNodes<Dim, Real, Device>{
-            {m.nodes}, o.gravity, m.grid.inverse_spacing, o.damping, o.dt, false, o.position_velocity});
+    Kokkos::parallel_for("vsb::update_lane_nodes", over_node_groups(),
+                         kernel::UpdateLaneNodes<Dim, Real, Device>{{m.nodes},
+                                                                    o.gravity,
+                                                                    m.grid.inverse_spacing,
+                                                                    o.damping,
+                                                                    o.pic,
+                                                                    o.dt,
+                                                                    false,
+                                                                    o.position_velocity});
   }
   void run_remap() {
     const auto& m = lanes.memory;

@@ -42,8 +42,10 @@ State<Dim, Real, Device> make_state(const Particles<Dim, Real, Device>& particle
 /// What stays the same over many steps.
 template <int Dim, class Real>
 struct StepOptions {
-  Real dt = 0;                                            ///< length of a step, s
-  Real damping = 0;                                       ///< Cundall's alpha, 0 <= alpha < 1
+  Real dt = 0;       ///< length of a step, s
+  Real damping = 0;  ///< Cundall's alpha, 0 <= alpha < 1
+  Real pic = 0;  ///< share of PIC in the velocities of particles, 0 <= eta < 1: takes away what the nodes do
+                 ///< not see; a wave of n cells loses pi^2 eta / (2 n kappa) of its amplitude a period
   Vector<Dim, Real> gravity = Vector<Dim, Real>::zero();  ///< body force per mass, m/s^2
   VolumeUpdate volume_update = DeterminantVolume{};       ///< determinant or exponential, see kinematics.hpp
   Scatter scatter = Scatter::gathered;  ///< how sums over particles are made; gathered: the same bits for any
@@ -61,6 +63,8 @@ void check_options(const StepOptions<Dim, Real>& options) {
                    " s: set it to a time above 0 (vsb::time_step gives a stable one)");
   if (!(options.damping >= Real(0) && options.damping < Real(1)))
     detail::refuse("StepOptions::damping is ", options.damping, ": set it to 0 or more, below 1");
+  if (!(options.pic >= Real(0) && options.pic < Real(1)))
+    detail::refuse("StepOptions::pic is ", options.pic, ": set it to 0 or more, below 1");
   for (int i = 0; i < Dim; ++i)
     if (!std::isfinite(options.gravity[i]))
       detail::refuse("StepOptions::gravity is ", options.gravity[i], " m/s^2 in direction ", i);
@@ -110,7 +114,7 @@ int step(const Exec& exec, State<Dim, Real, Device>& s, const std::vector<Body<R
                                          basis, virtual_stress, options.gravity, options.scatter);
   if (lost_point >= 0) return s.particles.count() + lost_point;
   update_nodes(exec, s.nodes, basis, options.damping, options.dt);
-  grid_to_particles(exec, s.particles, s.nodes, basis, options.dt);
+  grid_to_particles(exec, s.particles, s.nodes, basis, options.pic, options.dt);
   remap_velocity(exec, s.particles, s.occupancy.bins, s.nodes, s.remap_workspace, basis, options.scatter);
   if (options.volumetric == Volumetric::averaged)
     average_divergence(exec, s.particles, s.occupancy.bins, s.nodes.remapped_velocity, bodies, basis,

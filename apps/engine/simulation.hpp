@@ -138,6 +138,9 @@ class Simulation {
   /// What no support takes up of the particles' stress, weight and the loads of time t, s, in words; empty
   /// where the supports take up all but a thousandth of the nodal forces.
   virtual std::string unsupported_load(double t) = 0;
+  /// Adds random velocities to those of the particles, from -speed to speed, m/s, in every direction; for the
+  /// same particles always the same ones.
+  virtual void disturb(double speed) = 0;
   /// Throws Diverged when a field of a particle is not finite or a volume is not positive.
   virtual void check_health() = 0;
   /// The balance of the present state under the loads of the present or of a given time, s.

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <random>
 #include "engine/balance_report.hpp"
 #include "engine/choose_engine.hpp"
 #include "engine/departure.hpp"
@@ -116,6 +117,19 @@ class SimulationOf final : public Simulation {
     set_loads(t);
     constexpr double tolerance = 1e-3;  // what meshes and lattices leave of loads that are in balance
     return text(scene_, engine()->particles()->unsupported_load(tolerance));
+  }
+
+  void disturb(double speed) override {
+    use(engine_->particles());
+    auto host = host_copy(particles_->block());
+    std::mt19937_64 random;
+    for (int p = 0; p < particle_count(); ++p)
+      for (int i = 0; i < Dim; ++i) {
+        const double from_0_to_2 = static_cast<double>(random() >> 11) * 0x1p-52;
+        host.particles.velocity(p, i) += static_cast<Real>(speed * (from_0_to_2 - 1));
+      }
+    copy_to_device(host, particles_->block());
+    particles_->settle();
   }
 
   void check_health() override { throw_spoilt(engine_->find_invalid()); }

@@ -67,6 +67,7 @@ std::vector<std::pair<std::string, double>> named_figures(const Scene& scene, co
     const auto staged = stage_figures(f.stages, scene.removal->max_stages, scene.removal->hole.has_value());
     named.insert(named.end(), staged.begin(), staged.end());
   }
+  if (scene.growth) named.emplace_back("growth_rate", f.growth_rate);
   const auto d = static_cast<size_t>(scene.dimension);
   const auto add = [&](const std::string& name, const Point& vector, size_t first, size_t last) {
     for (size_t c = first; c < last; ++c) named.emplace_back(name + "_" + "xyz"[c], vector[c]);
@@ -240,6 +241,7 @@ std::string summary_json(const Scene& scene, const RunFigures& f) {
                                           {"mass", out.mass_gone},
                                           {"mass_in_grid", f.mass}});
   }
+  if (scene.growth) summary.insert("growth_rate", f.growth_rate);
   if (scene.removal) summary.insert("removal", toml::table(toml::parse(to_toml(f.stages))));
   if (f.cut.particles > 0)
     summary.insert("cut_bodies", toml::table{{"volume", f.cut.particles + f.cut.dropped},
@@ -344,6 +346,7 @@ void print_report(const Scene& scene, const RunFigures& f) {
   fmt::print("of the nodes: force ratio {:.2e}, energy ratio (kinetic to strain energy) {:.2e}\n",
              b.force_ratio, b.energy_ratio);
   if (std::isfinite(f.state.kinetic_energy)) print_state_figures(f.state, b.energy_ratio);
+  if (scene.growth) fmt::print("a small disturbance of this state grows at {:.3g} 1/s\n", f.growth_rate);
   if (!scene.removal) print_resultant(scene, b, "");  // the surface of the start is there no longer
   for (const auto& t : f.tractions)
     if (t.lost_at >= 0) fmt::print("lost load: {}\n", t.loss);

@@ -32,9 +32,10 @@ struct RunFigures {
   VoidFilterReport void_filter;
   BalanceReport balance;
   StateFigures state;
-  std::vector<TractionReport> tractions;  ///< those on boundary nodes, of an explicit run
-  ResultantShare share;                   ///< of a balance alone
-  StagesReport stages;                    ///< where particles are removed in stages
+  double growth_rate = StateFigures::none;  ///< of scene.growth, 1/s
+  std::vector<TractionReport> tractions;    ///< those on boundary nodes, of an explicit run
+  ResultantShare share;                     ///< of a balance alone
+  StagesReport stages;                      ///< where particles are removed in stages
   OutflowReport outflow;
   double mass = 0;         ///< of the particles at the end, kg
   std::string left_grid;   ///< how a healthy body left the grid, which ended the run

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "report/scene_advice.hpp"
+#include "run/growth.hpp"
 #include "run/interrupt.hpp"
 #include "run/run_parts.hpp"
 
@@ -162,6 +163,7 @@ void TimeLoop::conclude() {
   simulation_.check_health();
   if (found_static_ && !state_.stages) tell(state_.watch.look(true));
   figures_.balance = simulation_.balance();
+  if (scene_.growth) figures_.growth_rate = growth_rate(scene_, simulation_);
 }
 
 bool TimeLoop::collapsed(const std::string& message) {

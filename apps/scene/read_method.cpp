@@ -17,6 +17,11 @@ void read_method(TableReader r, bool as_in_paper, Scene& scene) {
   read_moment_fit(r, keys.moment_fit, scene);
   read_volumetric(r, keys.volumetric, scene);
   m.moves_by_grid = r.read<bool>(keys.position_velocity, as_in_paper);
+  m.pic = r.read(keys.pic);
+  if (m.pic > 0 && m.moves_by_grid)
+    r.fail(
+        keys.pic,
+        "needs position_velocity = \"strain\": with \"grid\" the particles' places drift from their strains");
   m.allow_particles_on_grid_lines = r.read(keys.allow_particles_on_grid_lines);
   r.finish();
 }

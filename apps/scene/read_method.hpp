@@ -57,6 +57,15 @@ struct MethodKeys : KeyTable {
                                        {"grid", true, "that of the paper's step"}},
                                       in_words("`\"grid\"` with `setting = \"paper\"`, else `\"strain\"`"),
                                       "the nodal velocity that moves the particles"};
+  NumberKey pic{
+      *this,
+      "pic",
+      {0, 1, false, true},
+      0.0,
+      "",
+      "share of PIC in the velocities of particles: takes away what the nodes do not see, such as the "
+      "heat of particles that cross many cells; .01 kappa is usual; a wave of n cells loses pi^2 pic / "
+      "(2 n kappa) of its amplitude a period"};
   BooleanKey allow_particles_on_grid_lines{
       *this, "allow_particles_on_grid_lines", false,
       "takes particles that lie on the faces of cells, whose cell is a matter of round-off"};

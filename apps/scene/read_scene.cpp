@@ -11,6 +11,7 @@
 #include "scene/read_body.hpp"
 #include "scene/read_comparison.hpp"
 #include "scene/read_grid.hpp"
+#include "scene/read_growth.hpp"
 #include "scene/read_method.hpp"
 #include "scene/read_output.hpp"
 #include "scene/read_removal.hpp"
@@ -50,6 +51,8 @@ struct SceneKeys : KeyTable {
   SubtableKey time{*this, "time", time_keys, required, "the time step and the end of the run"};
   SubtableKey static_solution{*this, "static", static_keys, in_words("all defaults"), "for vsb run --static"};
   SubtableKey removal{*this, "removal", removal_keys, in_words("none"), "failure in stages"};
+  SubtableKey growth{*this, "growth", growth_keys, in_words("none"),
+                     "how fast a disturbance grows at the end"};
   SubtableKey output{*this, "output", output_keys, in_words("all defaults"), "what a run leaves"};
   SubtableKey compare{*this, "compare", compare_keys, in_words("none"), "an exact solution"};
   SubtablesKey published{*this, "published", published_keys, in_words("none"), "figures of others"};
@@ -185,6 +188,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
   scene.static_solution = read_static(r.table(keys.static_solution));
   scene.removal = read_removal(r, keys.removal, scene);
   refuse_outflow_beside(r, scene);
+  scene.growth = read_growth(r, keys.growth, scene);
   scene.output = read_output(r.table(keys.output), scene);
   scene.compare = read_comparison(r, keys.compare, scene.bodies.front().material, scene, scene.more_norms);
   check_comparison(scene, r);

@@ -98,6 +98,7 @@ struct MethodSpec {
   BasisKind basis = BasisKind::linear;
   std::array<double, 3> gimp_half_width{};  ///< of a particle, per direction, in cells; of uGIMP
   double damping = 0;
+  double pic = 0;  ///< share of PIC in the velocities of particles
   std::string volume_update, scatter;
   std::string engine;          ///< auto, cell_lanes or particles, see engine/lane_engine.hpp
   int cell_gauss_points = 1;   ///< of the original virtual stress boundary method, per direction
@@ -160,6 +161,12 @@ enum class Setting {
   accurate  ///< quadratic B-splines, boundary boxes split and cut, 2 particles per cell and direction
 };
 
+/// Of a small disturbance of the state at the end; see run/growth.hpp.
+struct GrowthSpec {
+  double time = 0;     ///< for which it is followed, s
+  double damping = 0;  ///< Cundall's alpha meanwhile
+};
+
 struct Scene {
   std::string name, title;
   Setting setting = Setting::paper;
@@ -174,6 +181,7 @@ struct Scene {
   TimeSpec time;
   StaticSpec static_solution;
   std::optional<RemovalSpec> removal;
+  std::optional<GrowthSpec> growth;
   OutputSpec output;
   Comparison compare;
   MoreNorms more_norms;

@@ -13,6 +13,7 @@ StepOptions<Dim, Real> step_options(const Scene& scene) {
   StepOptions<Dim, Real> options{};
   options.dt = static_cast<Real>(scene.time.dt);
   options.damping = static_cast<Real>(scene.method.damping);
+  options.pic = static_cast<Real>(scene.method.pic);
   for (int i = 0; i < Dim; ++i) options.gravity[i] = static_cast<Real>(scene.gravity[static_cast<size_t>(i)]);
   if (scene.method.volume_update == "exponential") options.volume_update = ExponentialVolume{};
   options.scatter = scene.method.scatter == "atomic"       ? Scatter::atomic

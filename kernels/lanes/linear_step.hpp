@@ -333,6 +333,7 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
                                                                   options.gravity,
                                                                   m.grid.inverse_spacing,
                                                                   options.damping,
+                                                                  options.pic,
                                                                   options.dt,
                                                                   m.lanes.remaps_by_mass_matrix(),
                                                                   options.position_velocity});
@@ -341,7 +342,7 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
                          kernel::RemapLanes<Dim, Real, Device>{m.lanes, m.nodes});
   else
     Kokkos::parallel_for("vsb::accelerate_lanes", detail::over_layers(exec, s),
-                         kernel::AccelerateLanes<Dim, Real, Device>{m.lanes, m.nodes});
+                         kernel::AccelerateLanes<Dim, Real, Device>{m.lanes, m.nodes, options.pic});
   Kokkos::parallel_for(
       "vsb::remap_lane_nodes", over_node_groups,
       kernel::RemapLaneNodes<Dim, Real, Device>{{m.nodes}, options.dt * m.grid.inverse_spacing[0]});
@@ -352,7 +353,7 @@ int lane_step(const Exec& exec, LaneState<Dim, Real, Device>& s, const Material&
         kernel::MoveLanes<decltype(equal_spacing)::value, Field, Material, Volume, Dim, Real, Device>{
             detail::loaded_lanes(s),
             {m.lanes, m.nodes, m.grid, material, volume, m.migrating,
-             detail::lane_share<Dim>(material, options), options.position_velocity},
+             detail::lane_share<Dim>(material, options), options.position_velocity, options.pic},
             swept,
             and_sum});
   });

@@ -168,13 +168,14 @@ int lane_step(const Exec& exec, SplineLaneState<Dim, Real, Device>& s, const Mat
                                                                      options.gravity,
                                                                      m.grid.inverse_spacing,
                                                                      options.damping,
+                                                                     options.pic,
                                                                      options.dt,
                                                                      true,
                                                                      options.position_velocity});
   // With PositionVelocity::grid displacement_column too.
   mirror(m.nodes.increment_column, options.position_velocity == PositionVelocity::grid ? 2 : 1);
   Kokkos::parallel_for("vsb::accelerate_spline_lanes", detail::over_layers(exec, s),
-                       kernel::AccelerateSplineLanes<Dim, Real, Device>{m.lanes, m.nodes});
+                       kernel::AccelerateSplineLanes<Dim, Real, Device>{m.lanes, m.nodes, options.pic});
   fold(true);
   Kokkos::parallel_for(
       "vsb::remap_lane_nodes", over_node_groups,

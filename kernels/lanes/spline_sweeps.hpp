@@ -42,6 +42,7 @@ struct AccelerateSplineLanes {
   using Momentum = SplineLayerSums<1, Dim, Dim, Real, Device>;
   CellLanes<Dim, Real, Device> lanes;
   LaneNodes<Dim, Real, Device> nodes;
+  Real pic;  ///< eta
 
   KOKKOS_FUNCTION void operator()(int layer) const {
     Momentum sums(lanes, nodes, layer);
@@ -52,9 +53,10 @@ struct AccelerateSplineLanes {
     });
     sums.end();
   }
-  /// v_p <- v_p + dt sum_I N_Ip a_I.
+  /// v_p <- (1 - eta) v_p + sum_I N_Ip g_I.
   [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void accelerate(const LaneGroup<Dim>& group) const {
     const auto& stencil = lanes.stencils(lanes.number_of(group));
+    const P kept(Real(1) - pic);
     QuadraticPolynomial<Dim, P> dv[Dim];
     static_for<Dim>([&](auto i)
                         VSB_UNROLLED { coefficients_of(nodes, nodes.increment_column + i, stencil, dv[i]); });
@@ -62,7 +64,7 @@ struct AccelerateSplineLanes {
       const Powers<Dim, P> xi(lanes.load_xi(entry));
       static_for<Dim>([&](auto i) VSB_UNROLLED {
         const P v = lanes.load(lanes.velocity_column + i, entry);
-        lanes.store(lanes.velocity_column + i, entry, v + quadratic_at<Dim>(dv[i], xi));
+        lanes.store(lanes.velocity_column + i, entry, kept * v + quadratic_at<Dim>(dv[i], xi));
       });
     }
   }

@@ -3,23 +3,25 @@
 /// The sweeps over cell lanes of one MUSL step, a layer each call:
 ///   A  mass, momentum and force of the nodes: m_I = sum_p m_p N_Ip,  p_I = sum_p m_p v_p N_Ip,
 ///      f_I = -sum_p V_p sigma_p . grad N_Ip with the virtual stress (kernels/lanes/sums.hpp);
-///   B  FLIP, v_p <- v_p + dt sum_I N_Ip a_I, and the momentum of the re-map, p*_I = sum_p N_Ip m_p v_p;
+///   B  FLIP, v_p <- (1 - eta) v_p + sum_I N_Ip g_I with the increment g_I = dt a_I + eta v_I, eta being the
+///      share of PIC (kernels/particles/grid_to_particles.hpp) and v_I the velocity before the step, and the
+///      momentum of the re-map, p*_I = sum_p N_Ip m_p v_p;
 ///   C  L = sum_I v*_I (x) grad N_Ip,  sigma <- material(sigma, L dt),
 ///      V <- V det(I + dt L) or V exp(dt tr L),  x_p <- x_p + dt sum_I N_Ip v*_I.
 ///      Particles that leave their cell go to the layer's list of migrating particles.
 /// C of a step and A of the next one are one sweep: a particle is read and written once for both.
 ///
 /// With PositionVelocity::grid particles move by v_I, as in the paper.
-/// The nodes store dt a, dt v* in cells and, for PositionVelocity::grid, dt v in cells, so that the particles
+/// The nodes store g, dt v* in cells and, for PositionVelocity::grid, dt v in cells, so that the particles
 /// only interpolate.
 ///
 /// Against volumetric locking the mean divergence of a cell replaces the divergence of L
 /// (physics/mean_divergence.hpp). C sums the particles' volumes first to find it.
 ///
 /// With many particles per cell the mass matrix of the cell replaces sweep B:
-///   p*_I = p_I + dt sum_J M_IJ a_J,   M_IJ = sum_p m_p N_Ip N_Jp.
-/// A sums the consistent mass matrix M cell by cell (physics/cell_mass_matrix.hpp), RemapLanes adds M dt a to
-/// the nodes, and C begins with v_p <- v_p + dt sum_I N_Ip a_I.
+///   p*_I = (1 - eta) p_I + sum_J M_IJ g_J,   M_IJ = sum_p m_p N_Ip N_Jp.
+/// A sums the consistent mass matrix M cell by cell (physics/cell_mass_matrix.hpp), RemapLanes adds M g to
+/// the nodes, and C begins with v_p <- (1 - eta) v_p + sum_I N_Ip g_I.
 #pragma once
 
 #include <vsb/kernels/lanes/plasticity.hpp>
@@ -62,12 +64,13 @@ struct SumLanes {
   }
 };
 
-/// v_p <- v_p + dt sum_I N_Ip a_I for the particles of a group.
+/// v_p <- (1 - eta) v_p + sum_I N_Ip g_I for the particles of a group.
 template <int Dim, class Real, class Device>
 KOKKOS_FORCEINLINE_FUNCTION void accelerate(const CellLanes<Dim, Real, Device>& lanes,
                                             const LaneNodes<Dim, Real, Device>& nodes,
-                                            const LaneGroup<Dim>& group) {
+                                            const LaneGroup<Dim>& group, Real pic) {
   using P = typename Lanes<Real>::Pack;
+  const P kept(Real(1) - pic);
   Vector<(1 << Dim), P> dv[Dim];
   static_for<Dim>([&](auto i)
                       VSB_UNROLLED { values_at_corners(nodes, nodes.increment_column + i, group, dv[i]); });
@@ -75,7 +78,7 @@ KOKKOS_FORCEINLINE_FUNCTION void accelerate(const CellLanes<Dim, Real, Device>& 
     const CornerFunctions<Dim, P> N(lanes.load_xi(entry));
     static_for<Dim>([&](auto i) VSB_UNROLLED {
       const P v = lanes.load(lanes.velocity_column + i, entry);
-      lanes.store(lanes.velocity_column + i, entry, v + N.interpolate(dv[i]));
+      lanes.store(lanes.velocity_column + i, entry, kept * v + N.interpolate(dv[i]));
     });
   }
 }
@@ -87,6 +90,7 @@ struct AccelerateLanes {
   using Momentum = LayerSums<1, Dim, Dim, Real, Device>;
   CellLanes<Dim, Real, Device> lanes;
   LaneNodes<Dim, Real, Device> nodes;
+  Real pic;  ///< eta
 
   KOKKOS_FUNCTION void operator()(int layer) const {
     Momentum sums(nodes);
@@ -98,14 +102,14 @@ struct AccelerateLanes {
   }
   [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void accelerate_and_sum(const LaneGroup<Dim>& group,
                                                                           Momentum& sums) const {
-    accelerate(lanes, nodes, group);
+    accelerate(lanes, nodes, group, pic);
     CellPolynomial<Dim, P> p[Dim];
     lane_sums::momentum(lanes, group, p);
     static_for<Dim>([&](auto i) VSB_UNROLLED { sums.add(1 + i, group, p[i]); });
   }
 };
 
-/// p*_I = p_I + sum_J M_IJ dt a_J, in place of sweep B.
+/// p*_I = (1 - eta) p_I + sum_J M_IJ g_J, in place of sweep B; the nodes have (1 - eta) p_I.
 template <int Dim, class Real, class Device>
 struct RemapLanes {
   using P = typename Lanes<Real>::Pack;
@@ -145,6 +149,7 @@ struct MoveGroup {
   MigratingParticles<Dim, Real, Device> migrating;
   Real beta = 0;  ///< share of the divergence that a mean replaces (physics/mean_divergence.hpp)
   PositionVelocity position_velocity = PositionVelocity::strain;
+  Real pic = 0;  ///< eta
 
   KOKKOS_FORCEINLINE_FUNCTION void operator()(const LaneGroup<Dim>& group, int layer) const {
     if (beta > Real(0))
@@ -399,7 +404,7 @@ struct MoveLanes {
     move(group, layer);
   }
   [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void accelerate_apart(const LaneGroup<Dim>& group) const {
-    accelerate(on.lanes, move.nodes, group);
+    accelerate(on.lanes, move.nodes, group, move.pic);
   }
 };
 

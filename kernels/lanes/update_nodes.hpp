@@ -2,8 +2,8 @@
 /// \file
 /// The equation of motion at the nodes of cell lanes, Eq. (9) (see kernels/particles/update_nodes.hpp), a
 /// node group each call:
-///   first   v_I = p_I / m_I,  f_I <- damped(f_I + m_I g),  a_I = f_I / m_I;  stores dt a_I, and,
-///           for PositionVelocity::grid, dt (v_I + dt a_I) in cells;
+///   first   v_I = p_I / m_I,  f_I <- damped(f_I + m_I g),  a_I = f_I / m_I;  stores dt a_I + eta v_I, eta
+///           being the share of PIC, and, for PositionVelocity::grid, dt (v_I + dt a_I) in cells;
 ///   second  v*_I = p*_I / m_I, with the momentum p*_I of the re-map;  stores dt v*_I in cells.
 /// Components prescribed at a node are zero. Node groups without mass are skipped; a moving body has some
 /// ahead of it. The sums are set to zero, so that the next sweep can add to them.
@@ -36,6 +36,16 @@ struct LaneNodeRows {
     P(Real(0)).store(nodes.at(nodes.lower_sums + column, node));
     if (Dim > 1) P(Real(0)).store(nodes.at(nodes.upper_sums + column, node));
   }
+  /// Scales sums; those of node-centred cells are summed anew.
+  KOKKOS_FORCEINLINE_FUNCTION void scale(int column, int node, P factor) const {
+    if (Planes == 3) return;
+    const auto scale_one = [&](int c) {
+      const P scaled = factor * nodes.load(c, node);
+      scaled.store(nodes.at(c, node));
+    };
+    scale_one(nodes.lower_sums + column);
+    if (Dim > 1) scale_one(nodes.upper_sums + column);
+  }
   /// Returns a sum and sets it to zero, while it is in the cache.
   KOKKOS_FORCEINLINE_FUNCTION P take_sum(int column, int node) const {
     const P s = sum(column, node);
@@ -56,8 +66,8 @@ struct UpdateLaneNodes : LaneNodeRows<Dim, Real, Device, Planes> {
   using typename Base::P;
   Vector<Dim, Real> gravity;          ///< m/s^2
   Vector<Dim, Real> inverse_spacing;  ///< 1/m
-  Real damping, dt;
-  bool keep_momentum;                  ///< whether the re-map adds to it
+  Real damping, pic, dt;
+  bool keep_momentum;                  ///< whether the re-map adds to the share 1 - eta of it
   PositionVelocity position_velocity;  ///< grid: the displacement by v_I is stored too
 
   KOKKOS_FUNCTION void operator()(int node_group) const {
@@ -69,10 +79,13 @@ struct UpdateLaneNodes : LaneNodeRows<Dim, Real, Device, Planes> {
     inverse_mass.store(nodes.at(nodes.inverse_mass_column, node));
     static_for<Dim>([&](auto i) VSB_UNROLLED {
       const P v = this->sum(1 + i, node) * inverse_mass;
-      if (!keep_momentum) this->clear(1 + i, node);
+      if (!keep_momentum)
+        this->clear(1 + i, node);
+      else if (pic > Real(0))
+        this->scale(1 + i, node, P(Real(1) - pic));
       const P f = this->take_sum(1 + Dim + i, node) + m * P(gravity[i]);
       const P dv = cundall_damped(f, v, P(damping)) * inverse_mass * P(dt);
-      this->free_component(dv, node_group, i).store(nodes.at(nodes.increment_column + i, node));
+      this->free_component(dv + P(pic) * v, node_group, i).store(nodes.at(nodes.increment_column + i, node));
       if (position_velocity == PositionVelocity::strain) return;
       const P dx = (v + dv) * P(dt * inverse_spacing[i]);
       this->free_component(dx, node_group, i).store(nodes.at(nodes.displacement_column + i, node));

@@ -41,6 +41,11 @@ TEMPLATE_TEST_CASE_SIG("splines: positions by the velocity before the re-map", "
   check_grid_velocity<Dim, Real, Engines<Dim, Real>>();
 }
 
+TEMPLATE_TEST_CASE_SIG("splines: a share of PIC", "", ((int Dim, typename Real), Dim, Real), (1, double),
+                       (2, double), (3, double), (2, float)) {
+  check_pic<Dim, Real, Engines<Dim, Real>>([](auto&) {});
+}
+
 TEMPLATE_TEST_CASE_SIG("splines: particles next to the faces of their cells", "",
                        ((int Dim, typename Real), Dim, Real), (2, double), (3, double), (2, float)) {
   check_slivers<Dim, Real, Engines<Dim, Real>>();

@@ -42,6 +42,13 @@ TEMPLATE_TEST_CASE_SIG("positions by the velocity before the re-map", "",
   check_grid_velocity<Dim, Real, BothEngines<Dim, Real>>();
 }
 
+TEMPLATE_TEST_CASE_SIG("a share of PIC", "", ((int Dim, typename Real), Dim, Real), (1, double), (2, double),
+                       (3, double), (2, float)) {
+  for (const auto remap_method : {RemapMethod::second_sweep, RemapMethod::mass_matrix})
+    check_pic<Dim, Real, BothEngines<Dim, Real>>(
+        [&](auto& engines) { engines.lanes.memory.remap_method = remap_method; });
+}
+
 TEMPLATE_TEST_CASE_SIG("particles next to the faces of their cells", "",
                        ((int Dim, typename Real), Dim, Real), (1, double), (2, double), (3, double),
                        (2, float), (3, float)) {

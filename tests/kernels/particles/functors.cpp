@@ -170,12 +170,15 @@ TEST_CASE("UpdateNode") {
 }
 
 TEST_CASE("GridToParticles and the re-map") {
+  const double pic = GENERATE(0, 0.25);
   const auto particles = particle_1d();
   const auto nodes = allocate_nodes<1, double, Host>(2);
   nodes.acceleration(0, 0) = 8;
   nodes.acceleration(1, 0) = -4;
-  kernel::GridToParticles<LinearBasis<1, double>, 1, double, Host>{particles, nodes, cell_1d, 0.5}(0);
-  CHECK(particles.velocity(0, 0) == 3 + 0.5 * (6 - 1));
+  nodes.velocity(0, 0) = 2;
+  nodes.velocity(1, 0) = 16;
+  kernel::GridToParticles<LinearBasis<1, double>, 1, double, Host>{particles, nodes, cell_1d, pic, 0.5}(0);
+  CHECK(particles.velocity(0, 0) == (1 - pic) * (3 + 0.5 * (6 - 1)) + pic * (1.5 + 4));
   CHECK(particles.position(0, 0) == 1.5);
 
   particles.velocity(0, 0) = 3;

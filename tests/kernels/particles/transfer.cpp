@@ -107,10 +107,10 @@ TEMPLATE_TEST_CASE_SIG("mass, momentum and force pass between particles and node
     }
   }
 
-  // FLIP: the momentum changes by dt times the total force; the re-map keeps it.
-  const Real dt = Real(0.01);
+  // With any share of PIC the momentum changes by dt times the total force; the re-map keeps it.
+  const Real dt = Real(0.01), pic = GENERATE(Real(0), Real(0.25));
   update_nodes(Exec(), setup.state.nodes, setup.basis, Real(0), dt);
-  grid_to_particles(Exec(), setup.state.particles, setup.state.nodes, setup.basis, dt);
+  grid_to_particles(Exec(), setup.state.particles, setup.state.nodes, setup.basis, pic, dt);
   setup.remap();
   for (int i = 0; i < Dim; ++i) {
     const double after = setup.momentum(i);

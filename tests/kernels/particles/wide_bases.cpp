@@ -98,7 +98,7 @@ TEMPLATE_LIST_TEST_CASE("wide bases: mass, momentum and force pass without loss"
   }
   const double dt = 0.01;
   update_nodes(Exec(), state.nodes, basis, 0., dt);
-  grid_to_particles(Exec(), state.particles, state.nodes, basis, dt);
+  grid_to_particles(Exec(), state.particles, state.nodes, basis, 0., dt);
   remap_velocity(Exec(), state.particles, state.occupancy.bins, state.nodes, state.remap_workspace, basis,
                  Scatter::gathered);
   const auto sums = read(state.nodes.sums), v = read(state.nodes.remapped_velocity);
