@@ -6,6 +6,7 @@
 #include <vsb/physics/exact_column.hpp>
 #include <vsb/physics/exact_cylinder.hpp>
 #include <vsb/physics/exact_ellipse.hpp>
+#include <vsb/physics/exact_hencky_wall.hpp>
 #include <vsb/physics/linear_elastic.hpp>
 #include "report/cell_means.hpp"
 #include "report/yielding_cylinder.hpp"
@@ -72,6 +73,61 @@ ExactEllipse<double> solution_of(const EllipseComparison& c, const Scene& scene)
           c.far_stress, c.far_ratio,  scene.bodies.front().material.poisson_ratio};
 }
 
+/// The wall of a hole under pressure, with the radius of its hole.
+class Wall {
+ public:
+  Wall(const HenckyWallComparison& c, const Scene& scene)
+      : compared_(c),
+        dimension_(static_cast<size_t>(c.dimension)),
+        exact_(solution_of(c, scene)),
+        hole_(exact_.hole_radius()) {}
+
+  double hole_displacement() const { return hole_ - compared_.inner_radius; }
+  /// The position relative to the centre of the p-th of some points; [2] is 0 in 2D.
+  Vector<3, double> from_center(const std::vector<double>& position, size_t p) const {
+    auto x = Vector<3, double>::zero();
+    for (size_t i = 0; i < dimension_; ++i)
+      x[static_cast<int>(i)] = position[3 * p + i] - compared_.center[i];
+    return x;
+  }
+  ExactHenckyWall<double>::State at(double r) const { return exact_.at(r, hole_); }
+  /// Radial and hoop component of a stress at x.
+  PolarStress<double> components(const std::vector<double>& stresses, size_t p,
+                                 const Vector<3, double>& x) const {
+    SymmetricTensor<3, double> s;
+    for (int c = 0; c < s.size; ++c) s[c] = stresses[6 * p + static_cast<size_t>(c)];
+    double rr = 0, trace = 0;
+    for (int i = 0; i < compared_.dimension; ++i) {
+      trace += s(i, i);
+      for (int j = 0; j < compared_.dimension; ++j) rr += x[i] * s(i, j) * x[j];
+    }
+    rr /= dot(x, x);
+    return {rr, (trace - rr) / (compared_.dimension - 1), 0};
+  }
+  /// The exact stress at x.
+  SymmetricTensor<3, double> stress(const Vector<3, double>& x) const {
+    const auto state = at(std::sqrt(dot(x, x)));
+    auto s = SymmetricTensor<3, double>::zero();
+    for (int i = 0; i < 3; ++i) s[i] = i < compared_.dimension ? state.stress.tt : state.axial_stress;
+    for (int i = 0; i < 3; ++i)
+      for (int j = i; j < 3; ++j)
+        s[symmetric_index(i, j)] += (state.stress.rr - state.stress.tt) * x[i] * x[j] / dot(x, x);
+    return s;
+  }
+
+ private:
+  static ExactHenckyWall<double> solution_of(const HenckyWallComparison& c, const Scene& scene) {
+    const auto& m = scene.bodies.front().material;
+    const auto law = LinearElastic<double>::from_young(m.youngs_modulus, m.poisson_ratio);
+    return {c.inner_radius, c.outer_radius, c.pressure, law.lambda, law.shear_modulus, c.dimension - 1};
+  }
+
+  const HenckyWallComparison& compared_;
+  size_t dimension_;
+  ExactHenckyWall<double> exact_;
+  double hole_;
+};
+
 /// Eq. (31), Eq. (33): stresses over the traction or the pressure.
 void add_stress_errors(const ColumnComparison& c, const Scene& scene, const Samples& s, Norms& norms) {
   const auto solution = solution_of(c, scene);
@@ -115,6 +171,17 @@ void add_stress_errors(const EllipseComparison& c, const Scene& scene, const Sam
   }
 }
 
+void add_stress_errors(const HenckyWallComparison& c, const Scene& scene, const Samples& s, Norms& norms) {
+  const Wall wall(c, scene);
+  Norm &rr = norms["e_rr"], &tt = norms["e_tt"];
+  for (size_t p = 0; p < s.weight.size(); ++p) {
+    const auto x = wall.from_center(s.position, p);
+    const auto exact = wall.at(std::sqrt(dot(x, x))).stress, ours = wall.components(s.cauchy_stress, p, x);
+    rr.add((exact.rr - ours.rr) / c.pressure, s.weight[p]);
+    tt.add((exact.tt - ours.tt) / c.pressure, s.weight[p]);
+  }
+}
+
 /// u / x0 of the exact solution for the body's law.
 double stretching(const ColumnComparison& c, const Scene& scene) {
   const auto solution = solution_of(c, scene);
@@ -146,6 +213,18 @@ void add_displacement_errors(const CylinderComparison& c, const Scene& scene, co
                x0 = in_plane(s.initial_position, p) - Vector<2, double>{{c.center[0], c.center[1]}};
     const double r = std::sqrt(dot(x, x));
     u.add((solution.radial_displacement(r) - dot(x - x0, x) / r) / c.inner_radius, s.volume[p]);
+  }
+}
+
+/// The radial displacement over that of the hole: particles count by volume; at current positions.
+void add_displacement_errors(const HenckyWallComparison& c, const Scene& scene, const Snapshot& s,
+                             Norms& norms) {
+  const Wall wall(c, scene);
+  Norm& u = norms["e_u"];
+  for (size_t p = 0; p < s.count(); ++p) {
+    const auto x = wall.from_center(s.position, p), moved = x - wall.from_center(s.initial_position, p);
+    const double r = std::sqrt(dot(x, x)), exact = r - wall.at(r).initial_radius;
+    u.add((exact - dot(moved, x) / r) / wall.hole_displacement(), s.volume[p]);
   }
 }
 
@@ -197,6 +276,19 @@ ExactFields exact_fields(const EllipseComparison& c, const Scene& scene, const S
   ExactFields exact{{}, std::vector<double>(6 * s.count())};
   for (size_t p = 0; p < s.count(); ++p)
     store(solution.stress(in_plane(s.position, p)), exact.cauchy_stress, p);
+  return exact;
+}
+
+ExactFields exact_fields(const HenckyWallComparison& c, const Scene& scene, const Snapshot& s) {
+  const Wall wall(c, scene);
+  ExactFields exact{std::vector<double>(3 * s.count()), std::vector<double>(6 * s.count())};
+  for (size_t p = 0; p < s.count(); ++p) {
+    const auto x = wall.from_center(s.position, p);
+    const double r = std::sqrt(dot(x, x)), moved = r - wall.at(r).initial_radius;
+    const auto stress = wall.stress(x);
+    for (size_t i = 0; i < 3; ++i) exact.displacement[3 * p + i] = moved * x[static_cast<int>(i)] / r;
+    for (size_t k = 0; k < 6; ++k) exact.cauchy_stress[6 * p + k] = stress[static_cast<int>(k)];
+  }
   return exact;
 }
 
@@ -302,7 +394,9 @@ KnownExactly known_exactly(const Scene& scene) {
   const auto& c = scene.compare;
   if (std::holds_alternative<std::monostate>(c)) return {};
   if (std::holds_alternative<ColumnComparison>(c)) return {true, true, field::initial_position};
-  return {std::holds_alternative<CylinderComparison>(c), true, field::position};
+  const bool displacement =
+      std::holds_alternative<CylinderComparison>(c) || std::holds_alternative<HenckyWallComparison>(c);
+  return {displacement, true, field::position};
 }
 
 ExactFields exact_at(const Scene& scene, const Snapshot& snapshot) {

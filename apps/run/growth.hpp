@@ -12,7 +12,8 @@ namespace vsb::app {
 /// The particles of one get small random velocities. What the velocities differ by grows as exp(rate t); the
 /// rate is that of its mean square over the second half of the time. A state that keeps vibrating has 0, one
 /// that comes to rest less. What grows by a factor of a million is not followed further. Particles must not
-/// cross cells by themselves meanwhile: the state should be at rest. Throws Diverged and LeftGrid as a run.
+/// cross cells by themselves meanwhile: the state should be at rest. Not a number where they leave the grid
+/// before the rate can be told.
 double growth_rate(const Scene& scene, Simulation& at);
 
 }  // namespace vsb::app

@@ -81,6 +81,10 @@ struct ComparisonChecker {
       for (const double x : point) any("a coordinate", x);
   }
   void operator()(const YieldingCylinderComparison& c) const { ring(c); }
+  void operator()(const HenckyWallComparison& c) const {
+    ring(c);
+    for (const double x : c.center) any("a coordinate", x);
+  }
   void operator()(const EllipseComparison& c) const {
     positive("a semi-axis", c.semi_major);
     positive("a semi-axis", c.semi_minor);

@@ -2,9 +2,11 @@
 #include "scene/limits.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <vsb/physics/exact_column.hpp>
+#include <vsb/physics/exact_hencky_wall.hpp>
 #include <vsb/physics/exact_mohr_coulomb_cylinder.hpp>
 #include <vsb/physics/explicit_dynamics.hpp>
 #include <vsb/physics/linear_elastic.hpp>
@@ -31,6 +33,13 @@ double apex(const MaterialSpec& m) {
 double largest_column_tension(const MaterialSpec& m) {
   return m.law == MaterialLaw::hencky ? ExactHenckyColumn<double>::limit() * constrained_modulus(m)
                                       : std::numeric_limits<double>::infinity();
+}
+
+bool bears_pressure(const HenckyWallComparison& wall, const MaterialSpec& material) {
+  const auto law = LinearElastic<double>::from_young(material.youngs_modulus, material.poisson_ratio);
+  return std::isfinite(ExactHenckyWall<double>{wall.inner_radius, wall.outer_radius, wall.pressure,
+                                               law.lambda, law.shear_modulus, wall.dimension - 1}
+                           .hole_radius());
 }
 
 double collapse_pressure(const YieldingCylinderComparison& c, const MaterialSpec& m) {

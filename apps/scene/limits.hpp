@@ -20,6 +20,9 @@ double apex(const MaterialSpec& material);
 /// The largest axial tension of a column, Pa; infinite where there is none.
 double largest_column_tension(const MaterialSpec& material);
 
+/// Whether a wall of the material has an equilibrium under its pressure.
+bool bears_pressure(const HenckyWallComparison& wall, const MaterialSpec& material);
+
 /// The pressure at which a cylinder yields as a whole, Pa.
 double collapse_pressure(const YieldingCylinderComparison& cylinder, const MaterialSpec& material);
 

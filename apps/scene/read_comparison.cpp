@@ -19,12 +19,13 @@ struct ErrorNames {
 
 /// In the order of Comparison.
 std::vector<ErrorNames> errors_of_solutions() {
-  static_assert(std::variant_size_v<Comparison> == 5);
+  static_assert(std::variant_size_v<Comparison> == 6);
   return {{{}, {}},
           {{"e_u", "e_u_exact", "e_sigma"}, {"e_sigma"}},
           {{"e_rr", "e_tt", "e_u"}, {"e_rr", "e_tt"}},
           {{"e_rr", "e_tt"}, {"e_rr", "e_tt"}},
-          {{"e_xx", "e_yy", "e_xy"}, {"e_xx", "e_yy", "e_xy"}}};
+          {{"e_xx", "e_yy", "e_xy"}, {"e_xx", "e_yy", "e_xy"}},
+          {{"e_rr", "e_tt", "e_u"}, {"e_rr", "e_tt"}}};
 }
 
 constexpr const char* of_recovered = "_recovered";
@@ -75,6 +76,22 @@ YieldingCylinderComparison read_yielding_cylinder(TableReader& r, const Material
   return c;
 }
 
+HenckyWallComparison read_hencky_wall(TableReader& r, const Scene& scene) {
+  const auto& keys = compare_keys;
+  const auto& material = scene.bodies.front().material;
+  if (scene.dimension == 1 || material.law != MaterialLaw::hencky)
+    r.fail(keys.solution, "is for a body with law = \"hencky\" in 2D or 3D");
+  auto c = read_radii<HenckyWallComparison>(r);
+  c.dimension = scene.dimension;
+  c.pressure = r.read(keys.pressure);
+  if (!bears_pressure(c, material))
+    r.fail(keys.pressure,
+           "is more than the wall can bear: no hole up to three times as wide is in equilibrium");
+  const auto center = r.read(keys.center.of(static_cast<size_t>(scene.dimension)));
+  std::copy(center.begin(), center.end(), c.center.begin());
+  return c;
+}
+
 }  // namespace
 
 PublishedKeys::PublishedKeys()
@@ -98,10 +115,11 @@ const NumberKey& PublishedKeys::error(const std::string& name) const {
   return *std::find_if(errors.begin(), errors.end(), [&](const NumberKey& key) { return key.name == name; });
 }
 
-Comparison read_comparison(TableReader& document, const SubtableKey& key, const MaterialSpec& material,
-                           const Scene& scene, MoreNorms& more) {
+Comparison read_comparison(TableReader& document, const SubtableKey& key, const Scene& scene,
+                           MoreNorms& more) {
   const auto& keys = compare_keys;
   if (!document.has(key)) return {};
+  const auto& material = scene.bodies.front().material;
   TableReader r = document.table(key);
   const std::string solution = r.read(keys.solution);
   Comparison comparison;
@@ -111,6 +129,8 @@ Comparison read_comparison(TableReader& document, const SubtableKey& key, const 
     comparison = read_cylinder(r);
   else if (solution == "yielding_cylinder")
     comparison = read_yielding_cylinder(r, material);
+  else if (solution == "hencky_wall")
+    comparison = read_hencky_wall(r, scene);
   else
     comparison = read_ellipse(r, keys.ellipse);
   more.recovered = r.read(keys.recovered);

@@ -17,14 +17,16 @@ struct CompareKeys : KeyTable {
       : KeyTable(
             "compare",
             "An exact solution of the scene, for error norms. The other keys are those of the solution.") {}
-  ChoiceKey solution{*this,
-                     "solution",
-                     {{"column", "of length and traction"},
-                      {"cylinder", "of inner_radius, outer_radius, pressure, center and moved"},
-                      {"yielding_cylinder", "of inner_radius, outer_radius and pressure"},
-                      {"ellipse", "of the keys of an elliptic hole"}},
-                     required,
-                     "with which the state is compared"};
+  ChoiceKey solution{
+      *this,
+      "solution",
+      {{"column", "of length and traction"},
+       {"cylinder", "of inner_radius, outer_radius, pressure, center and moved"},
+       {"yielding_cylinder", "of inner_radius, outer_radius and pressure"},
+       {"hencky_wall", "a cylinder, in 3D a sphere, of inner_radius, outer_radius, pressure and center"},
+       {"ellipse", "of the keys of an elliptic hole"}},
+      required,
+      "with which the state is compared"};
   NumberKey length{*this, "length", Range::positive(), in_words("required by column"), "m", "L0 of Eq. (30)"};
   NumberKey traction{*this,
                      "traction",
@@ -32,18 +34,25 @@ struct CompareKeys : KeyTable {
                      in_words("required by column"),
                      "Pa",
                      "positive in compression; not 0"};
-  NumberKey inner_radius{*this, "inner_radius",   Range::positive(), in_words("required by cylinders"),
-                         "m",   "of the cylinder"};
-  NumberKey outer_radius{
-      *this, "outer_radius",   Range::in_words("> inner_radius"), in_words("required by cylinders"),
-      "m",   "of the cylinder"};
+  NumberKey inner_radius{*this,
+                         "inner_radius",
+                         Range::positive(),
+                         in_words("required by cylinders and walls"),
+                         "m",
+                         "of the cylinder or the wall, undeformed"};
+  NumberKey outer_radius{*this,
+                         "outer_radius",
+                         Range::in_words("> inner_radius"),
+                         in_words("required by cylinders and walls"),
+                         "m",
+                         "of the cylinder or the wall, undeformed"};
   NumberKey pressure{*this,
                      "pressure",
                      Range::positive(),
-                     in_words("required by cylinders"),
+                     in_words("required by cylinders and walls"),
                      "Pa",
                      "positive in compression"};
-  NumbersKey center{*this, "center", 2, Range::any(), 0.0, "m", "before it moves"};
+  NumbersKey center{*this, "center", 2, Range::any(), 0.0, "m", "before it moves; of a sphere 3 numbers"};
   NumbersKey moved{*this, "moved", 2, Range::any(), 0.0, "m", "carried as a whole at the end"};
   EllipseKeys ellipse{*this, "required by ellipse"};
   BooleanKey recovered{*this, "recovered", false,
@@ -61,9 +70,9 @@ struct PublishedKeys : KeyTable {
 };
 inline const PublishedKeys published_keys;
 
-/// Bodies and basis must be known. `key` is that of the document.
-Comparison read_comparison(TableReader& document, const SubtableKey& key, const MaterialSpec& material,
-                           const Scene& scene, MoreNorms& more);
+/// Dimension, bodies and basis must be known. `key` is that of the document.
+Comparison read_comparison(TableReader& document, const SubtableKey& key, const Scene& scene,
+                           MoreNorms& more);
 /// The comparison must be known, and with it the names of the errors.
 std::vector<Published> read_published(TableReader& document, const SubtablesKey& key, const Scene& scene);
 

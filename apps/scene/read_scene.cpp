@@ -190,7 +190,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
   refuse_outflow_beside(r, scene);
   scene.growth = read_growth(r, keys.growth, scene);
   scene.output = read_output(r.table(keys.output), scene);
-  scene.compare = read_comparison(r, keys.compare, scene.bodies.front().material, scene, scene.more_norms);
+  scene.compare = read_comparison(r, keys.compare, scene, scene.more_norms);
   check_comparison(scene, r);
   scene.published = read_published(r, keys.published, scene);
   r.finish();

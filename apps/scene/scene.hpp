@@ -136,9 +136,15 @@ struct CylinderComparison {
 struct YieldingCylinderComparison {
   double inner_radius, outer_radius, pressure;
 };
+/// Of a body with law = "hencky": a cylinder, or in 3D a sphere.
+struct HenckyWallComparison {
+  double inner_radius, outer_radius, pressure;
+  int dimension;   ///< 2: a cylinder along z, 3: a sphere
+  Point center{};  ///< m
+};
 using EllipseComparison = EllipseSpec;
 using Comparison = std::variant<std::monostate, ColumnComparison, CylinderComparison,
-                                YieldingCylinderComparison, EllipseComparison>;
+                                YieldingCylinderComparison, EllipseComparison, HenckyWallComparison>;
 
 /// Error norms of the stress beside those of the particles' own.
 struct MoreNorms {

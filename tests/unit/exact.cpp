@@ -5,6 +5,7 @@
 #include <vsb/physics/exact_column.hpp>
 #include <vsb/physics/exact_cylinder.hpp>
 #include <vsb/physics/exact_ellipse.hpp>
+#include <vsb/physics/exact_hencky_wall.hpp>
 
 #include "support.hpp"
 
@@ -194,4 +195,48 @@ TEST_CASE("polar components by hand, and there and back") {
     const auto back = from_polar<3>(to_polar(t, x, y), x, y);
     for (int c = 0; c < 6; ++c) CHECK_THAT(back[c], WithinAbs(t[c], 1e-15));
   }
+}
+
+TEST_CASE("Hencky wall: equilibrium, the law, and the conditions at both faces") {
+  const int hoops = GENERATE(1, 2);
+  const double lambda = 5e5, mu = 4e5, p = 1e5;
+  const ExactHenckyWall<double> wall{1, 2, p, lambda, mu, hoops};
+  const double hole = wall.hole_radius();
+  REQUIRE(hole > 1);
+  const auto initial = [&](double r) { return wall.at(r, hole).initial_radius; };
+  CHECK_THAT(initial(hole), WithinAbs(1, 1e-14));
+  CHECK_THAT(wall.at(hole, hole).stress.rr, WithinAbs(-p, 1e-9));
+  double outer = hole;  // the radius of what was at 2
+  for (double low = hole, high = 3; high - low > 1e-13;) {
+    outer = (low + high) / 2;
+    (initial(outer) < 2 ? low : high) = outer;
+  }
+  CHECK_THAT(wall.at(outer, hole).stress.rr, WithinAbs(0, 1e-6 * p));
+  for (const double r : {1.05 * hole, 0.5 * (hole + outer), 0.98 * outer}) {
+    const auto state = wall.at(r, hole);
+    const auto rr = [&](double x) { return wall.at(x, hole).stress.rr; };
+    CHECK_THAT(derivative(rr, r), WithinRel(-hoops * (state.stress.rr - state.stress.tt) / r, 1e-7));
+    const double a = std::log(1 / derivative(initial, r)), b = std::log(r / state.initial_radius),
+                 log_J = a + hoops * b, J = std::exp(log_J);
+    CHECK_THAT(J * state.stress.rr, WithinAbs(lambda * log_J + 2 * mu * a, 1e-7 * p));
+    CHECK_THAT(J * state.stress.tt, WithinAbs(lambda * log_J + 2 * mu * b, 1e-7 * p));
+    CHECK_THAT(J * state.axial_stress, WithinAbs(lambda * log_J + (hoops == 2 ? 2 * mu * b : 0), 1e-7 * p));
+  }
+}
+
+TEST_CASE("Hencky wall: Lame's solutions under a small pressure") {
+  const double E = 1e6, nu = 0.3, p = 1e-2, a3 = 1, b3 = 8, r = 1.4;
+  const double lambda = E * nu / (1 + nu) / (1 - 2 * nu), mu = E / 2 / (1 + nu);
+  const ExactHenckyWall<double> cylinder{1, 2, p, lambda, mu, 1}, sphere{1, 2, p, lambda, mu, 2};
+  const ExactCylinder<double> small{1, 2, p, E, nu};
+  CHECK_THAT(cylinder.hole_radius() - 1, WithinRel(small.radial_displacement(1), 1e-6));
+  CHECK_THAT(cylinder.at(r, cylinder.hole_radius()).stress.tt, WithinRel(small.stress(r).tt, 1e-6));
+  CHECK_THAT(sphere.hole_radius() - 1,
+             WithinRel(p * a3 / (b3 - a3) / E * ((1 - 2 * nu) + (1 + nu) * b3 / (2 * a3)), 1e-6));
+  CHECK_THAT(sphere.at(r, sphere.hole_radius()).stress.tt,
+             WithinRel(p * a3 / (b3 - a3) * (1 + b3 / (2 * r * r * r)), 1e-6));
+}
+
+TEST_CASE("Hencky wall: no equilibrium beyond the limit load") {
+  CHECK_FALSE(std::isfinite(ExactHenckyWall<double>{1, 2, 1e6, 5e5, 4e5, 1}.hole_radius()));
 }
