@@ -102,11 +102,16 @@ KOKKOS_FORCEINLINE_FUNCTION T value_from(const Vector<N, T>& c, const Powers<Dim
   else
     return value_from<i + 1>(value_along<i>(c, xi), xi);
 }
+/// The value, which the gradient needs but for the last direction.
 template <int i, int Dim, class T, int N>
-KOKKOS_FORCEINLINE_FUNCTION void gradient_from(const Vector<N, T>& c, const Powers<Dim, T>& xi,
-                                               Vector<Dim, T>& gradient) {
+KOKKOS_FORCEINLINE_FUNCTION T value_and_gradient_from(const Vector<N, T>& c, const Powers<Dim, T>& xi,
+                                                      Vector<Dim, T>& gradient) {
   gradient[i] = value_from<i + 1>(slope_along<i>(c, xi), xi);
-  if constexpr (i + 1 < Dim) gradient_from<i + 1>(value_along<i>(c, xi), xi, gradient);
+  const auto along = value_along<i>(c, xi);
+  if constexpr (i + 1 < Dim)
+    return value_and_gradient_from<i + 1>(along, xi, gradient);
+  else
+    return along[0];
 }
 }  // namespace detail
 
@@ -116,13 +121,11 @@ KOKKOS_FORCEINLINE_FUNCTION T quadratic_at(const QuadraticPolynomial<Dim, T>& c,
   return detail::value_from<0>(c, xi);
 }
 
-/// Its derivatives with respect to xi.
+/// The same, and its derivatives with respect to xi in `gradient`.
 template <int Dim, class T>
-KOKKOS_FORCEINLINE_FUNCTION Vector<Dim, T> quadratic_gradient_at(const QuadraticPolynomial<Dim, T>& c,
-                                                                 const Powers<Dim, T>& xi) {
-  Vector<Dim, T> gradient;
-  detail::gradient_from<0>(c, xi, gradient);
-  return gradient;
+KOKKOS_FORCEINLINE_FUNCTION T quadratic_at(const QuadraticPolynomial<Dim, T>& c, const Powers<Dim, T>& xi,
+                                           Vector<Dim, T>& gradient) {
+  return detail::value_and_gradient_from<0>(c, xi, gradient);
 }
 
 /// m_k += c sum_p w_p dq_k / dxi_j, from the moments sum_p w_p q_k, of which those with k_j = 2 are not

@@ -15,7 +15,7 @@ void read_method(TableReader r, bool as_in_paper, Scene& scene) {
   m.fill_criterion = r.read(keys.fill_criterion);
   m.void_filter = r.read(keys.void_filter);
   read_moment_fit(r, keys.moment_fit, scene);
-  read_volumetric(r, keys.volumetric, scene);
+  read_volumetric(r, keys.volumetric, as_in_paper, scene);
   m.moves_by_grid = r.read<bool>(keys.position_velocity, as_in_paper);
   m.pic = r.read(keys.pic);
   if (m.pic > 0 && m.moves_by_grid)

@@ -49,7 +49,8 @@ struct MethodKeys : KeyTable {
       *this,
       "volumetric",
       {{"full", false}, {"averaged", true, "the mean over neighbours: no locking near incompressibility"}},
-      in_words("`\"averaged\"` where a Poisson's ratio is 0.4 or more"),
+      in_words("`\"averaged\"` where a Poisson's ratio is 0.4 or more, or a body may yield (not with "
+               "`setting = \"paper\"`)"),
       "the divergence by which particles strain"};
   ChoiceKeyOf<bool> position_velocity{*this,
                                       "position_velocity",

@@ -21,9 +21,12 @@ bool may_lock(const BodySpec& body) {
   return body.material.poisson_ratio >= locking_poisson_ratio;
 }
 
-void read_volumetric(TableReader& method, const ChoiceKeyOf<bool>& key, Scene& scene) {
+void read_volumetric(TableReader& method, const ChoiceKeyOf<bool>& key, bool as_in_paper, Scene& scene) {
   const auto reason = refusal(scene);
-  const bool preset = reason.empty() && std::any_of(scene.bodies.begin(), scene.bodies.end(), may_lock);
+  const auto locks = [&](const BodySpec& body) {
+    return may_lock(body) || (!as_in_paper && is_plastic(body.material.law));
+  };
+  const bool preset = reason.empty() && std::any_of(scene.bodies.begin(), scene.bodies.end(), locks);
   scene.method.averaged = method.read<bool>(key, preset);
   if (scene.method.averaged && !reason.empty()) method.fail(key, reason);
 }

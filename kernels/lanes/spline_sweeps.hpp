@@ -127,14 +127,16 @@ struct MoveSplineGroup : MoveGroup<false, Material, Volume, Dim, Real, Device> {
   template <bool averaged>
   [[gnu::noinline, gnu::flatten]] KOKKOS_FUNCTION void move(const LaneGroup<Dim>& group, int layer) const {
     const auto& stencil = lanes.stencils(lanes.number_of(group));
-    QuadraticPolynomial<Dim, P> dx[Dim], u[Dim];
-    static_for<Dim>([&](auto i) VSB_UNROLLED {
-      coefficients_of(nodes, nodes.remapped_column + i, stencil, u[i]);
-      if (position_velocity == PositionVelocity::grid)
-        coefficients_of(nodes, nodes.displacement_column + i, stencil, dx[i]);
-      else
-        dx[i] = P(grid.inverse_spacing[i] * grid.spacing[0]) * u[i];
-    });
+    QuadraticPolynomial<Dim, P> u[Dim], by_grid[Dim];
+    static_for<Dim>([&](auto i)
+                        VSB_UNROLLED { coefficients_of(nodes, nodes.remapped_column + i, stencil, u[i]); });
+    const QuadraticPolynomial<Dim, P>* dx = nullptr;
+    if (position_velocity == PositionVelocity::grid) {
+      static_for<Dim>([&](auto i) VSB_UNROLLED {
+        coefficients_of(nodes, nodes.displacement_column + i, stencil, by_grid[i]);
+      });
+      dx = by_grid;
+    }
     const CellRange range = range_of(group);
     CentreRange<Dim, P> centres;
     CellPolynomial<Dim, P> mean;
@@ -144,9 +146,12 @@ struct MoveSplineGroup : MoveGroup<false, Material, Volume, Dim, Real, Device> {
     }
     for (size_t entry = lanes.begin(group); entry < lanes.end(group); entry += P::width) {
       const Powers<Dim, P> xi(lanes.load_xi(entry));
+      Vector<Dim, P> moved;
       Matrix<Dim, P> L;  // dt L
       static_for<Dim>([&](auto i) VSB_UNROLLED {
-        const auto gradient = quadratic_gradient_at<Dim>(u[i], xi);
+        Vector<Dim, P> gradient;
+        const P by_strain = quadratic_at<Dim>(u[i], xi, gradient);
+        moved[i] = xi.first[i] + P(grid.inverse_spacing[i] * grid.spacing[0]) * by_strain;
         static_for<Dim>([&](auto j) VSB_UNROLLED {
           L(i, j) = gradient[j] * P(grid.inverse_spacing[j] * grid.spacing[0]);
         });
@@ -156,8 +161,8 @@ struct MoveSplineGroup : MoveGroup<false, Material, Volume, Dim, Real, Device> {
       this->advance(entry, L);
       const P V = lanes.load(lanes.volume_column, entry);
       lanes.store(lanes.volume_column, entry, volume(V, L, P(1)));
-      Vector<Dim, P> moved;
-      static_for<Dim>([&](auto i) VSB_UNROLLED { moved[i] = xi.first[i] + quadratic_at<Dim>(dx[i], xi); });
+      if (dx)
+        static_for<Dim>([&](auto i) VSB_UNROLLED { moved[i] = xi.first[i] + quadratic_at<Dim>(dx[i], xi); });
       lanes.store_row(lanes.xi_column, entry, moved);
       note_crossing(layer, entry, xi.first, moved);
       if (!range.holds(moved)) this->copy_migrating(group, layer, entry);

@@ -70,7 +70,8 @@ TEMPLATE_TEST_CASE_SIG("a nodal field on a node-centred cell and its gradient", 
       };
     };
     check_lanes(quadratic_at<Dim>(c, powers), expected(-1));
-    const auto gradient = quadratic_gradient_at<Dim>(c, powers);
+    Vector<Dim, T> gradient;
+    check_lanes(quadratic_at<Dim>(c, powers, gradient), expected(-1));
     for (int j = 0; j < Dim; ++j) check_lanes(gradient[j], expected(j));
   }
 }
