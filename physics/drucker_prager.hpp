@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <vsb/physics/elastic_cone.hpp>
+#include <vsb/physics/gap.hpp>
 #include <vsb/physics/plastic_strain.hpp>
 
 namespace vsb {
@@ -32,7 +33,7 @@ struct DruckerPragerConstants {
 };
 
 /// A Drucker-Prager or von Mises material; the equations are at the top of this file. Its state per particle
-/// is the plastic strain and kappa.
+/// is the plastic strain, the gap of physics/gap.hpp, and kappa.
 template <class Real>
 struct DruckerPrager {
   static constexpr bool plastic = true;  ///< see material.hpp
@@ -69,10 +70,10 @@ struct DruckerPrager {
             static_cast<Real>(hardening_modulus)};
   }
 
-  /// Numbers to remember per particle: the plastic strain and kappa.
+  /// Numbers to remember per particle: the plastic strain, the gap and kappa.
   template <int Dim>
   KOKKOS_FUNCTION static constexpr int state_size() {
-    return symmetric_components(Dim) + 1;
+    return symmetric_components(Dim) + 2;
   }
 
   /// M of Eq. (29), Pa: stiffness in uniaxial strain, elastic.
@@ -94,16 +95,18 @@ struct DruckerPrager {
   KOKKOS_FORCEINLINE_FUNCTION auto may_yield(const SymmetricTensor<Dim, T>& trial,
                                              const Vector<N, T>& state) const {
     const T mean = mean_stress(trial);
-    return outside_cone(second_invariant(trial, mean), mean, T(friction), strength(state[N - 1]));
+    return outside_cone(second_invariant(trial, mean), mean, T(friction), strength(state[N - 1])) |
+           (gap_in<Dim>(state) > T(0));
   }
 
   /// Returns a trial stress beyond the cone to it: along the flow direction, or to the apex.
   template <int Dim>
   [[gnu::noinline]] KOKKOS_FUNCTION void return_stress(SymmetricTensor<Dim, Real>& stress,
                                                        Vector<state_size<Dim>(), Real>& state) const {
+    press_into_gap(elastic, stress, state);
     Real& kappa = state[state_size<Dim>() - 1];
     const Real mean = mean_stress(stress), J = math::sqrt(second_invariant(stress, mean));
-    const Real G = elastic.shear_modulus, K = elastic.lambda + 2 * G / 3;
+    const Real G = elastic.shear_modulus, K = elastic.bulk_modulus();
     const Real hardening = cohesion_factor * cohesion_factor * hardening_modulus;
     const Real beyond = J + friction * mean - strength(kappa);
     if (!(beyond > 0)) return;
@@ -116,7 +119,9 @@ struct DruckerPrager {
                        ? (friction * mean - strength(kappa)) / (K * friction * dilation + hardening)
                        : J / G;  // the flow direction misses the apex; hardening by the deviator alone
       // Without friction there is no apex: here round-off has taken the whole deviator.
-      mean_excess = friction > 0 ? mean - strength(kappa + cohesion_factor * multiplier) / friction : Real(0);
+      const Real left = strength(kappa + cohesion_factor * multiplier);
+      mean_excess = friction > 0 ? mean - left / friction : Real(0);
+      if (friction > 0 && left == Real(0)) open_gap<Dim>(elastic, mean, state);
     }
     kappa += cohesion_factor * multiplier;
     auto excess = share * stress;

@@ -41,6 +41,9 @@ struct LinearElastic {
   /// M of Eq. (29), Pa: stiffness in uniaxial strain.
   KOKKOS_FUNCTION Real constrained_modulus() const { return lambda + 2 * shear_modulus; }
 
+  /// K, Pa.
+  KOKKOS_FUNCTION Real bulk_modulus() const { return lambda + 2 * shear_modulus / 3; }
+
   /// The stress at the end of a step of length dt with velocity gradient L.
   template <int Dim, class T>
   KOKKOS_FORCEINLINE_FUNCTION SymmetricTensor<Dim, T> advance(const SymmetricTensor<Dim, T>& sigma,

@@ -8,10 +8,10 @@
 /// does, and changes the state. A state of zeros is that of a particle without stress and deformation. At
 /// small strain around that state every material is linear elastic, small_strain_law().
 ///
-/// The state of a `plastic` material begins with its plastic strain, in the order of SymmetricTensor;
-/// hardening variables follow. Such a material has an elastic law for the trial stress, `elastic`; a test
-/// without branches, may_yield(trial, state), which is false only for elastic states; and
-/// return_stress(stress, state).
+/// The state of a `plastic` material begins with its plastic strain, in the order of SymmetricTensor; the gap
+/// of physics/gap.hpp and hardening variables follow. Such a material has an elastic law for the trial
+/// stress, `elastic`; a test without branches, may_yield(trial, state), which is false only for elastic
+/// states; and return_stress(stress, state).
 #pragma once
 
 #include <variant>

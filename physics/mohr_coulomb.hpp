@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <vsb/physics/elastic_cone.hpp>
+#include <vsb/physics/gap.hpp>
 #include <vsb/physics/mohr_coulomb_return.hpp>
 #include <vsb/physics/plastic_strain.hpp>
 #include <vsb/physics/principal_stresses.hpp>
@@ -32,7 +33,7 @@ struct MohrCoulombConstants {
 };
 
 /// A Mohr-Coulomb or Tresca material; the equations are at the top of this file. Its state per particle is
-/// the plastic strain.
+/// the plastic strain and the gap of physics/gap.hpp.
 template <class Real>
 struct MohrCoulomb {
   static constexpr bool plastic = true;  ///< see material.hpp
@@ -68,10 +69,10 @@ struct MohrCoulomb {
     return result;
   }
 
-  /// Numbers to remember per particle: the plastic strain.
+  /// Numbers to remember per particle: the plastic strain and the gap.
   template <int Dim>
   KOKKOS_FUNCTION static constexpr int state_size() {
-    return symmetric_components(Dim);
+    return symmetric_components(Dim) + 1;
   }
 
   /// M of Eq. (29), Pa: stiffness in uniaxial strain, elastic.
@@ -91,16 +92,17 @@ struct MohrCoulomb {
   /// False only where a trial stress is elastic; on packs for every lane.
   template <int Dim, int N, class T>
   KOKKOS_FORCEINLINE_FUNCTION auto may_yield(const SymmetricTensor<Dim, T>& trial,
-                                             const Vector<N, T>&) const {
+                                             const Vector<N, T>& state) const {
     const T mean = mean_stress(trial), J2 = second_invariant(trial, mean);
     return outside_cone(J2, mean, T(cone_slope), T(cone_strength)) |
-           may_exceed_tension(J2, mean, T(surface.tensile_strength));
+           may_exceed_tension(J2, mean, T(surface.tensile_strength)) | (gap_in<Dim>(state) > T(0));
   }
 
   /// Returns a trial stress to the yield surface, if it lies beyond.
   template <int Dim>
   [[gnu::noinline]] KOKKOS_FUNCTION void return_stress(SymmetricTensor<Dim, Real>& stress,
                                                        Vector<state_size<Dim>(), Real>& state) const {
+    press_into_gap(elastic, stress, state);
     auto principal = principal_stresses(stress);
     auto& value = principal.value;
     int at[3] = {0, 1, 2};  // of the largest, the middle, the smallest
@@ -117,6 +119,7 @@ struct MohrCoulomb {
     const Vector<3, Real> trial{{value[at[0]], value[at[1]], value[at[2]]}};
     if (!surface.exceeded(trial)) return;
     const auto returned = surface.returned(trial);
+    if (surface.apart(returned, trial)) open_gap<Dim>(elastic, mean_stress(stress), state);
     for (int k = 0; k < 3; ++k) value[at[k]] = trial[k] - returned[k];
     release(elastic, from_principal_values(principal), stress, state);
   }

@@ -33,6 +33,11 @@ struct MohrCoulombSurface {
     return s[0] - s[2] + sin_friction * (s[0] + s[2]) > strength || s[0] > tensile_strength;
   }
 
+  /// Whether `returned`, to which a trial stress returned, is the apex of a surface that ends at zero stress.
+  KOKKOS_FUNCTION bool apart(const Vector<3, Real>& returned, const Vector<3, Real>& trial) const {
+    return math::min(apex, tensile_strength) == Real(0) && returned[2] >= -round_off(trial);
+  }
+
   /// The point of the surface to which a trial stress beyond it returns. Both are sorted, s1 >= s2 >= s3, in
   /// Pa.
   KOKKOS_FUNCTION Vector<3, Real> returned(const Vector<3, Real>& trial) const {
@@ -54,6 +59,11 @@ struct MohrCoulombSurface {
   }
 
  private:
+  /// Of the stresses to which `trial` may return, Pa.
+  KOKKOS_FUNCTION Real round_off(const Vector<3, Real>& trial) const {
+    return 64 * math::epsilon<Real> * (math::abs(trial[0]) + math::abs(trial[2]) + strength);
+  }
+
   enum : int { main, right, left, tension_1, tension_2, tension_3 };
   struct Plane {
     Vector<3, Real> normal, flow;
@@ -92,7 +102,7 @@ struct MohrCoulombSurface {
     for (int i = 0; i < Count; ++i)
       for (int j = 0; j < Count; ++j) A(i, j) = dot(normal[i], step[j]);
     const auto multiplier = inverse(A) * excess;
-    const Real round_off = 64 * math::epsilon<Real> * (math::abs(trial[0]) + math::abs(trial[2]) + strength);
+    const Real round_off = this->round_off(trial);
     s = trial;
     for (int j = 0; j < Count; ++j) {
       if (!(multiplier[j] >= -round_off)) return false;
