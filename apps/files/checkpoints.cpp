@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::int64_t checkpoint_version = 3;
+constexpr std::int64_t checkpoint_version = 4;
 
 /// Bytes into an array of a file.
 struct IntoRows final : ByteSink {

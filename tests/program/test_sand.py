@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A column of dry sand that collapses: it rises nowhere, keeps its volume, and runs out as far as in experiments."""
+import unittest
+
+import h5py
+import numpy as np
+from vsb_program import ProgramTest, frames
+
+WIDTH = HEIGHT = 1.0
+SPACING = 0.0625
+
+
+class DrySand(ProgramTest):
+    def collapse(self, *arguments, out="sand"):
+        """Of every frame: positions, and the volume over that at the start."""
+        self.run_scene("dry-sand", *arguments, out=out)
+        states = []
+        for path, _ in frames(self.folder / out):
+            with h5py.File(path) as file:
+                states.append((file["VTKHDF/Points"][()], file["VTKHDF/PointData/volume"][()].sum() / (WIDTH * HEIGHT)))
+        return states
+
+    def check(self, states):
+        first_top = states[0][0][:, 1].max()
+        for x, volume in states:
+            self.assertLessEqual(x[:, 1].max(), first_top + 1e-6)
+            self.assertGreater(volume, 0.99)
+            self.assertLess(volume, 1.05)
+        x, _ = states[-1]
+        # Lube et al. (2005), Lajeunesse et al. (2005): (L - L0) / L0 = 1.2 H0 / L0 of columns that are not high; 99 % of
+        # the sand, and the last column of cells that has a full row of particles on average.
+        columns = np.bincount((x[:, 0] / SPACING).astype(int), minlength=80)
+        for front in np.quantile(x[:, 0], 0.99), SPACING * np.argmax(columns < 2):
+            self.assertGreater((front - WIDTH) / HEIGHT, 0.9)
+            self.assertLess((front - WIDTH) / HEIGHT, 1.5)
+        self.assertGreater(x[:, 1].max(), 0.85 * HEIGHT)  # beside the wall it stays
+
+    def test_collapse(self):
+        self.check(self.collapse())
+
+    def test_collapse_in_single_precision(self):
+        self.check(self.collapse("--set", 'precision="float"'))
+
+    def test_drucker_prager(self):
+        self.check(self.collapse("--set", 'body[0].material={law="drucker_prager",youngs_modulus=1e7,poisson_ratio=0.3,'
+                                 'cohesion=0.0,friction_angle=31.0,cone="plane_strain"}'))
+
+    def test_the_same_bits_on_any_number_of_threads(self):
+        hashes = {self.run_scene("dry-sand", "--set", "time.steps=1000", out=f"threads-{n}",
+                                 environment={"OMP_NUM_THREADS": str(n)})["state_hash"] for n in (1, 3)}
+        self.assertEqual(len(hashes), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
