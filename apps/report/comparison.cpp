@@ -305,6 +305,23 @@ struct HoopRatio {
   }
   Figures figures(const CylinderComparison&, const Scene&) const { return {{"hoop_ratio", hoop / exact}}; }
 };
+/// How far the hole has widened over the exact widening, by the particles of the innermost eighth of the
+/// wall.
+struct HoleRatio {
+  double moved = 0, exact = 0;
+  void add(const HenckyWallComparison& c, const Scene& scene, const Snapshot& s) {
+    const Wall wall(c, scene);
+    const double innermost = c.inner_radius + (c.outer_radius - c.inner_radius) / 8;
+    for (size_t p = 0; p < s.count(); ++p) {
+      const auto x = wall.from_center(s.position, p), x0 = wall.from_center(s.initial_position, p);
+      const double r = std::sqrt(dot(x, x)), R = std::sqrt(dot(x0, x0));
+      if (R > innermost) continue;
+      moved += s.mass[p] * (r - R);
+      exact += s.mass[p] * (r - wall.at(r).initial_radius);
+    }
+  }
+  Figures figures(const HenckyWallComparison&, const Scene&) const { return {{"hole_ratio", moved / exact}}; }
+};
 /// How far it has yielded: the mean radius, that of the furthest particle, and the exact one.
 struct PlasticRadii {
   PlasticZone zone;
@@ -324,6 +341,9 @@ struct NoFigures {
   }
 };
 HoopRatio figures_of(const CylinderComparison&) {
+  return {};
+}
+HoleRatio figures_of(const HenckyWallComparison&) {
   return {};
 }
 PlasticRadii figures_of(const YieldingCylinderComparison&) {
@@ -349,6 +369,7 @@ ComparisonResult compare(const Solution& c, const Scene& scene, const ParticleRe
   auto others = figures_of(c);
   unsigned fields = field::initial_position | field::position | field::cauchy_stress | field::volume;
   if (std::holds_alternative<YieldingCylinderComparison>(scene.compare)) fields |= field::plastic_strain;
+  if (std::holds_alternative<HenckyWallComparison>(scene.compare)) fields |= field::mass;
   if (scene.more_norms.recovered) fields |= field::recovered_stress;
   particles.for_each_range(fields, [&](const Snapshot& s) {
     const auto weight = weights(c, s);
@@ -385,6 +406,7 @@ ExactFields exact_fields(const std::monostate&, const Scene&, const Snapshot&) {
 
 std::vector<std::string> comparison_figure_names(const Comparison& comparison) {
   if (std::holds_alternative<CylinderComparison>(comparison)) return {"hoop_ratio"};
+  if (std::holds_alternative<HenckyWallComparison>(comparison)) return {"hole_ratio"};
   if (std::holds_alternative<YieldingCylinderComparison>(comparison))
     return {"plastic_radius", "largest_plastic_radius", "exact_radius"};
   return {};

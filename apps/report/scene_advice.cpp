@@ -137,10 +137,25 @@ bool takes_sudden_weight(const Scene& scene, const BodySpec& body) {
          scene.method.damping < strong_damping;
 }
 
-/// What cures locking.
-std::string averaging_text(const Scene& scene) {
-  return scene.method.basis == BasisKind::ugimp ? "another basis can average (method.volumetric)"
-                                                : "\"averaged\" cures it";
+/// What the cells of a body do that strains by the divergences of its particles; empty where they do not
+/// lock.
+std::string locking_text(const Scene& scene, const BodySpec& body) {
+  const char* const cure = scene.method.basis == BasisKind::ugimp
+                               ? "another basis can average (method.volumetric)"
+                               : "\"averaged\" cures it";
+  if (may_lock(body))
+    return fmt::format(
+        "body '{}' has poisson_ratio = {:g} and method.volumetric = \"full\": near 0.5 cells lock, and "
+        "stresses are "
+        "wrong by 5 % at 0.4, 40 % at 0.49 (linear functions; a tenth of it with B-splines); {}",
+        body.name, body.material.poisson_ratio, cure);
+  if (is_plastic(body.material.law) && scene.method.basis != BasisKind::quadratic_bspline)
+    return fmt::format(
+        "body '{}' may yield, and method.volumetric = \"full\": plastic flow keeps the volume, cells lock, "
+        "and the body "
+        "bears more than it can (a vertical cut stood at 1.3 times its critical height); {}",
+        body.name, cure);
+  return {};
 }
 
 /// Whether a traction is hydrostatic, and its `up` not the direction against gravity.
@@ -235,19 +250,7 @@ std::vector<std::string> scene_advice(const Scene& scene) {
   for (auto& text : thin_body_advice(scene)) advice.push_back(std::move(text));
   if (!scene.method.averaged && scene.dimension > 1)
     for (const auto& body : scene.bodies)
-      if (may_lock(body))
-        advice.push_back(fmt::format(
-            "body '{}' has poisson_ratio = {:g} and method.volumetric = \"full\": near 0.5 cells lock, and "
-            "stresses are wrong by 5 % at 0.4, 40 % at 0.49 (linear functions; a tenth of it with "
-            "B-splines); "
-            "{}",
-            body.name, body.material.poisson_ratio, averaging_text(scene)));
-      else if (is_plastic(body.material.law) && scene.method.basis != BasisKind::quadratic_bspline)
-        advice.push_back(fmt::format(
-            "body '{}' may yield, and method.volumetric = \"full\": plastic flow keeps the volume, cells "
-            "lock, and a "
-            "body bears more than it can (a vertical cut stood at 1.3 times its critical height); {}",
-            body.name, averaging_text(scene)));
+      if (const auto text = locking_text(scene, body); !text.empty()) advice.push_back(text);
   if (scene.method.basis == BasisKind::quadratic_bspline && scene.time.until_static &&
       scene.time.until_static->force_ratio < least_spline_ratio)
     advice.push_back(fmt::format(
