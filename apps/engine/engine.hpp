@@ -43,7 +43,8 @@ class Engine {
 
   virtual ~Engine() = default;
 
-  /// Makes a step. set_loads(n) sets the loads of the model to those at the end of the n-th step from here.
+  /// Makes a step, under the gravity of the model. set_loads(n) sets the tractions of the model to those at
+  /// the end of the n-th step from here.
   virtual StepOutcome step(const std::function<void(int)>& set_loads) = 0;
   /// Lets the particles outside the grid go (Model::let_go), and finds the cells of the others.
   virtual void settle() = 0;

@@ -86,7 +86,9 @@ class SimulationOf final : public Simulation {
   void advance(long long steps) override {
     for (long long n = 0; n < steps;) {
       use_engine_of_steps();
-      const auto [made, lost] = engine_->step([&](int ahead) { set_loads(load_time_at(step_ + ahead)); });
+      set_gravity(load_time_at(step_ + 1));
+      const auto [made, lost] =
+          engine_->step([&](int ahead) { set_tractions(load_time_at(step_ + ahead)); });
       if (made) {
         ++step_;
         ++n;
@@ -300,6 +302,12 @@ class SimulationOf final : public Simulation {
     return static_cast<double>(step - loads_begin_) * scene_.time.dt;
   }
   void set_loads(double t) {
+    set_gravity(t);
+    set_tractions(t);
+  }
+  /// Both engines take gravity in the step itself; cell lanes take tractions ahead of theirs.
+  void set_gravity(double t) { model_.options.gravity = gravity_at<Dim, Real>(scene_, t); }
+  void set_tractions(double t) {
     model_.loads.set_time(scene_, t);
     engine_->balance_loads();
   }

@@ -10,6 +10,7 @@
 #include "report/neighbour_advice.hpp"
 #include "report/spline_rest.hpp"
 #include "report/thin_bodies.hpp"
+#include "scene/load_in_time.hpp"
 #include "scene/read_body.hpp"
 #include "scene/read_volumetric.hpp"
 #include "scene/units.hpp"
@@ -130,11 +131,39 @@ std::string crossing_text(const std::string& moved) {
 /// yielded by 0.8 % with 0.1.
 constexpr double strong_damping = 0.5;
 
-/// Whether a plastic body takes its weight, which acts in full from the first step on, without a stress that
-/// carries it: it may yield where it would not at rest.
+/// The period of a body's slowest vibration along gravity, s, about: that of a column on its base.
+double fall_period(const Scene& scene, const BodySpec& body) {
+  const auto box = bounds_of(body.region, bounding_box(scene.grid, scene.dimension), scene.dimension);
+  double height = 0;
+  const double g = std::hypot(scene.gravity[0], scene.gravity[1], scene.gravity[2]);
+  for (size_t i = 0; i < 3; ++i) height += std::abs(scene.gravity[i]) / g * (box.upper[i] - box.lower[i]);
+  return 4 * height / std::sqrt(body.material.youngs_modulus / body.density);
+}
+
+/// Of a load, by which it may change within a period: a ramp over n periods overshoots by 1 / (pi n) at most,
+/// so that this one does by 6 %.
+constexpr double gentle_change = 0.2;
+
+/// Whether a plastic body takes its weight, which acts all of a sudden, without a stress that carries it: it
+/// may yield where it would not at rest.
 bool takes_sudden_weight(const Scene& scene, const BodySpec& body) {
-  return scene.gravity != Point{} && is_plastic(body.material.law) && !begins_stressed(body) &&
-         scene.method.damping < strong_damping;
+  if (!has_gravity(scene) || !is_plastic(body.material.law) || begins_stressed(body) ||
+      scene.method.damping >= strong_damping)
+    return false;
+  const auto& time = scene.gravity_time;
+  return std::max(std::abs(time(0)), time.steepest() * fall_period(scene, body)) > gentle_change;
+}
+
+std::string sudden_weight_text(const Scene& scene, const BodySpec& body) {
+  const double period = fall_period(scene, body);
+  const auto how = scene.gravity_time(0) == 1
+                       ? std::string("acts in full from the first step on")
+                       : fmt::format("changes faster than in five periods of {:.2g} s", period);
+  return fmt::format(
+      "gravity {}, which loads body '{}' with up to twice its weight and may make it yield where it would "
+      "not at rest; let it grow slowly (gravity_time.smooth_ramp = {:.2g} s), or begin with the stress of "
+      "its weight (body.stress), or with method.damping = 0.8",
+      how, body.name, 10.5 * period);
 }
 
 /// What the cells of a body do that strains by the divergences of its particles; empty where they do not
@@ -161,7 +190,7 @@ std::string locking_text(const Scene& scene, const BodySpec& body) {
 /// Whether a traction is hydrostatic, and its `up` not the direction against gravity.
 bool has_level_across_gravity(const Scene& scene, const TractionSpec& traction) {
   const auto* water = std::get_if<HydrostaticSpec>(&traction.field);
-  if (!water || scene.gravity == Point{}) return false;
+  if (!water || !has_gravity(scene)) return false;
   double along = 0, size = 0;
   for (size_t i = 0; i < 3; ++i) {
     along -= water->up[i] * scene.gravity[i];
@@ -214,11 +243,7 @@ std::vector<std::string> scene_advice(const Scene& scene) {
   for (auto& text : interface_advice(scene)) advice.push_back(std::move(text));
   for (const auto& body : scene.bodies)
     if (scene.time.until_static && takes_sudden_weight(scene, body))
-      advice.push_back(fmt::format(
-          "gravity acts in full from the first step on, which loads body '{}' with up to twice its weight "
-          "and may make it yield where it would not at rest; begin with the stress of its weight "
-          "(body.stress), or with method.damping = 0.8",
-          body.name));
+      advice.push_back(sudden_weight_text(scene, body));
   for (const auto& traction : scene.tractions)
     if (has_level_across_gravity(scene, traction))
       advice.push_back(fmt::format("traction '{}': 'up' of its hydrostatic pressure is not against gravity",
@@ -283,21 +308,19 @@ std::vector<std::string> crossing_advice(const Scene& scene, double largest_disp
 std::vector<std::string> short_run_advice(const Scene& scene) {
   std::vector<std::string> advice;
   const double end = scene.time.dt * static_cast<double>(scene.time.steps);
-  for (size_t k = 0; k < scene.tractions.size(); ++k) {
-    const auto& traction = scene.tractions[k];
-    const double settled = traction.time.settled_at();
+  for (const auto& load : loads_in_time(scene)) {
+    const double settled = load.time.settled_at();
     if (!std::isfinite(settled)) continue;
-    const double last = traction.time(end), final = traction.time(settled);
+    const double last = load.time(end), final = load.time(settled);
     if (std::abs(last - final) < round_off * std::abs(final)) continue;
     const std::string share =
-        final == 0 ? fmt::format("{:.3g} times its full stress, where its final value is 0", last)
+        final == 0 ? fmt::format("{:.3g} times its full value, where its final value is 0", last)
                    : fmt::format("{:.3g} % of its final value", 100 * last / final);
     advice.push_back(fmt::format(
-        "traction '{}' is at {} at the last possible step: {} = {} ends {} at {:.6g} s, and "
-        "traction[{}].time "
-        "is constant from {:.6g} s on",
-        traction.name, share, scene.time.until_static ? "time.until_static.max_steps" : "time.steps",
-        scene.time.steps, scene.removal ? "a stage" : "the run", end, k, settled));
+        "{} is at {} at the last possible step: {} = {} ends {} at {:.6g} s, and {} is constant from {:.6g} "
+        "s on",
+        load.name, share, scene.time.until_static ? "time.until_static.max_steps" : "time.steps",
+        scene.time.steps, scene.removal ? "a stage" : "the run", end, load.key, settled));
   }
   return advice;
 }

@@ -20,7 +20,7 @@ std::vector<std::string> scene_advice(const Scene& scene);
 /// On a state at rest whose particles crossed cells on linear functions; largest_displacement: m.
 std::vector<std::string> crossing_advice(const Scene& scene, double largest_displacement);
 
-/// On each traction that is still short of its final value at the last possible step of an explicit run.
+/// On each load that is still short of its final value at the last possible step of an explicit run.
 std::vector<std::string> short_run_advice(const Scene& scene);
 
 }  // namespace vsb::app

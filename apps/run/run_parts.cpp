@@ -41,19 +41,12 @@ std::vector<std::string> support_advice(const Scene& scene, Simulation& simulati
 
 }  // namespace
 
-double loads_settled_at(const Scene& scene) {
-  double t = 0;
-  for (const auto& traction : scene.tractions) t = std::max(t, traction.time.settled_at());
-  return t;
-}
-
 void refuse_unsettled_loads(const Scene& scene, const std::string& who) {
-  for (const auto& traction : scene.tractions)
-    if (!std::isfinite(traction.time.settled_at()))
-      throw SetupError(
-          traction.where,
-          fmt::format("{}: traction '{}' is a sine, which never settles, so there is no final load", who,
-                      traction.name));
+  for (const auto& load : loads_in_time(scene))
+    if (!std::isfinite(load.time.settled_at()))
+      throw SetupError(load.where,
+                       fmt::format("{}: {} is a sine, which never settles, so there is no final load", who,
+                                   load.name));
 }
 
 void print_warnings(const std::vector<std::string>& warnings) {

@@ -6,11 +6,9 @@
 #include "engine/simulation.hpp"
 #include "files/results.hpp"
 #include "report/summary.hpp"
+#include "scene/load_in_time.hpp"
 
 namespace vsb::app {
-
-/// The time from which on all loads are constant, s; infinite where one never is.
-double loads_settled_at(const Scene& scene);
 
 /// Throws SetupError, which begins with `who`, for a load that never settles.
 void refuse_unsettled_loads(const Scene& scene, const std::string& who);

@@ -15,6 +15,7 @@ BodySpec read_body(TableReader r, const Scene& scene, size_t number) {
   read_lattice(r, keys.lattice, scene, body);
   body.density = r.read(keys.density);
   body.stress = read_affine<6>(r, keys.stress, 6, dimension);
+  if (const auto* stress = r.written(keys.stress)) body.stress_where = location(*stress);
   body.velocity = read_affine<3>(r, keys.velocity, static_cast<size_t>(dimension), dimension);
   body.material = read_material(r.table(keys.material));
   if (body.material.law == MaterialLaw::hencky && r.has(keys.stress) && !is_zero(body.stress))

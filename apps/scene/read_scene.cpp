@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "scene/check_magnitudes.hpp"
+#include "scene/load_in_time.hpp"
 #include "scene/read_body.hpp"
 #include "scene/read_comparison.hpp"
 #include "scene/read_grid.hpp"
@@ -42,6 +43,8 @@ struct SceneKeys : KeyTable {
   ChoiceKeyOf<bool> single_precision{
       *this, "precision", {{"double", false}, {"float", true}}, first_word, "of the particles and nodes"};
   NumbersKey gravity{*this, "gravity", per_direction, Range::any(), 0.0, "m/s^2", "on all bodies"};
+  SubtableKey gravity_time{*this, "gravity_time", gravity_time_keys, in_words("full load from the start"),
+                           "how gravity varies in time"};
   SubtableKey grid{*this, "grid", grid_keys, required, "the background grid"};
   SubtableKey faces{*this, "faces", face_keys, in_words("all open"), "conditions at the faces of the grid"};
   SubtablesKey body{*this, "body", body_keys, required, "at least one"};
@@ -64,17 +67,17 @@ bool is_loaded(const Scene& scene) {
   const auto box = bounding_box(scene.grid, scene.dimension);
   const auto acts = [&](const TractionSpec& t) { return largest_stress(t.field, box.lower, box.upper) > 0; };
   const auto begins_loaded = [](const BodySpec& b) { return !is_zero(b.stress) || !is_zero(b.velocity); };
-  return scene.gravity != Point{} || std::any_of(scene.tractions.begin(), scene.tractions.end(), acts) ||
+  return has_gravity(scene) || std::any_of(scene.tractions.begin(), scene.tractions.end(), acts) ||
          std::any_of(scene.bodies.begin(), scene.bodies.end(), begins_loaded);
 }
 
 /// Whether elastic bodies end without any force: the loads that they had are 0 from some time on.
 bool ends_unloaded(const Scene& scene) {
   const auto elastic = [](const BodySpec& b) { return !is_plastic(b.material.law) && is_zero(b.stress); };
-  const auto ends = [](const TractionSpec& t) { return t.time(t.time.settled_at()) == 0; };
-  return scene.gravity == Point{} && !scene.tractions.empty() &&
-         std::all_of(scene.bodies.begin(), scene.bodies.end(), elastic) &&
-         std::all_of(scene.tractions.begin(), scene.tractions.end(), ends);
+  const auto loads = loads_in_time(scene);
+  const auto ends = [](const LoadInTime& load) { return load.time(load.time.settled_at()) == 0; };
+  return !loads.empty() && std::all_of(scene.bodies.begin(), scene.bodies.end(), elastic) &&
+         std::all_of(loads.begin(), loads.end(), ends);
 }
 
 /// Refuses a run until static without a static state to run to.
@@ -82,17 +85,16 @@ void refuse_restless(const TableReader& r, const Scene& scene) {
   const auto refuse = [&](const std::string& why) {
     r.fail(*r.source()["time"]["until_static"].node(), "time.until_static", why);
   };
-  for (const auto& traction : scene.tractions)
-    if (!std::isfinite(traction.time.settled_at()))
-      refuse(fmt::format("traction '{}' is a sine, which never settles; give time.steps instead",
-                         traction.name));
+  for (const auto& load : loads_in_time(scene))
+    if (!std::isfinite(load.time.settled_at()))
+      refuse(fmt::format("{} is a sine, which never settles; give time.steps instead", load.name));
   if (!is_loaded(scene))
     refuse(
         "nothing loads the bodies (no traction, gravity, initial stress or velocity), so there is no static "
         "state to run to");
   if (ends_unloaded(scene))
     refuse(
-        "every traction ends at 0, where elastic bodies have no force left by which rest could be judged; "
+        "every load ends at 0, where elastic bodies have no force left by which rest could be judged; "
         "give time.steps instead");
 }
 
@@ -156,6 +158,11 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
   scene.single_precision = r.read<bool>(keys.single_precision);
   const auto gravity = r.read(keys.gravity.of(static_cast<size_t>(scene.dimension)));
   std::copy(gravity.begin(), gravity.end(), scene.gravity.begin());
+  if (r.has(keys.gravity_time) && !has_gravity(scene))
+    r.fail(keys.gravity_time, "varies a gravity of 0: give 'gravity', or leave it out");
+  TimeShape gravity_shape;
+  if (has_gravity(scene))
+    gravity_shape = read_time_function(r.table(keys.gravity_time), gravity_time_keys);
   if (!r.has(keys.grid)) r.missing(keys.grid, "a table with lower, upper and spacing");
   scene.grid = read_grid(r.table(keys.grid, grid_keys.beyond(scene.dimension)), scene.dimension);
   if (scene.grid.mapped() && scene.single_precision)
@@ -183,6 +190,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
   if (!r.has(keys.time)) r.missing(keys.time, "a table with dt or kappa, and steps or until_static");
   scene.time = read_time(r.table(keys.time), scene);
   check_magnitudes(scene, r);
+  scene.gravity_time = gravity_shape.at(scene.time.dt);
   for (size_t k = 0; k < time_shapes.size(); ++k) scene.tractions[k].time = time_shapes[k].at(scene.time.dt);
   if (scene.time.until_static) refuse_restless(r, scene);
   scene.static_solution = read_static(r.table(keys.static_solution));

@@ -12,8 +12,7 @@ namespace vsb::app {
 
 namespace {
 
-TimeFunction read_table(TableReader& r) {
-  const Key& key = load_time_keys.table;
+TimeFunction read_table(TableReader& r, const Key& key) {
   const toml::node& node = *r.node(key);
   const char* what = "must be an array of [time in s, factor] pairs, times not decreasing";
   TimeFunction::Table points;
@@ -30,13 +29,13 @@ TimeFunction read_table(TableReader& r) {
   return points;
 }
 
-TimeFunction read_sine(TableReader r) {
+TimeFunction read_sine(TableReader r, const SineKeys& keys) {
   TimeFunction::Sine sine{};
-  sine.period = r.read(sine_keys.period);
-  sine.amplitude = r.read(sine_keys.amplitude);
-  sine.mean = r.read(sine_keys.mean);
-  sine.start = r.read(sine_keys.start);
-  sine.phase = radians(r.read(sine_keys.phase));
+  sine.period = r.read(keys.period);
+  sine.amplitude = r.read(keys.amplitude);
+  sine.mean = r.read(keys.mean);
+  sine.start = r.read(keys.start);
+  sine.phase = radians(r.read(keys.phase));
   r.finish();
   return sine;
 }
@@ -49,8 +48,7 @@ TimeFunction TimeShape::at(double dt) const {
   return smooth ? TimeFunction(TimeFunction::SmoothRamp{duration}) : TimeFunction::ramp(duration);
 }
 
-TimeShape read_time_function(TableReader r) {
-  const auto& keys = load_time_keys;
+TimeShape read_time_function(TableReader r, const LoadTimeKeys& keys) {
   const auto& forms = keys.keys();
   const auto names = fmt::format("{}", fmt::join(names_of(forms), ", "));
   r.refuse_empty("a table with one of " + names);
@@ -69,9 +67,9 @@ TimeShape read_time_function(TableReader r) {
   } else if (r.has(keys.step)) {
     shape.in_seconds = TimeFunction::step(r.read(keys.step));
   } else if (r.has(keys.table)) {
-    shape.in_seconds = read_table(r);
+    shape.in_seconds = read_table(r, keys.table);
   } else if (r.has(keys.sine)) {
-    shape.in_seconds = read_sine(r.table(keys.sine));
+    shape.in_seconds = read_sine(r.table(keys.sine), keys.sine_keys);
   } else {
     const double duration = r.read(keys.ramp);
     if (duration > 0) shape.in_seconds = TimeFunction::ramp(duration);

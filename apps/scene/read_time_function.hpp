@@ -3,6 +3,9 @@
 /// Reads how a load varies in time.
 #pragma once
 
+#include <string>
+#include <utility>
+
 #include "scene/read_time.hpp"
 #include "scene/time_function.hpp"
 #include "scene/toml_reader.hpp"
@@ -10,8 +13,8 @@
 namespace vsb::app {
 
 struct SineKeys : KeyTable {
-  SineKeys()
-      : KeyTable("traction.time.sine",
+  explicit SineKeys(std::string path)
+      : KeyTable(std::move(path),
                  "mean + amplitude sin(2 pi (t - start) / period + phase), and the mean before the start.") {}
   NumberKey period{*this, "period", Range::positive(), required, "s", "of one oscillation"};
   NumberKey amplitude{*this, "amplitude", Range::any(), 1.0, "", "share of the full load"};
@@ -19,11 +22,14 @@ struct SineKeys : KeyTable {
   NumberKey start{*this, "start", Range::at_least(0), 0.0, "s", "of the oscillation"};
   NumberKey phase{*this, "phase", Range::any(), 0.0, "degrees", "at 'start'"};
 };
-inline const SineKeys sine_keys;
+inline const SineKeys traction_sine_keys{"traction.time.sine"}, gravity_sine_keys{"gravity_time.sine"};
 
 /// One of these.
 struct LoadTimeKeys : KeyTable {
-  LoadTimeKeys() : KeyTable("traction.time", "How the load varies in time: one of these keys.") {}
+  LoadTimeKeys(std::string path, const SineKeys& its_sine)
+      : KeyTable(std::move(path), "How the load varies in time: one of these keys."), sine_keys(its_sine) {}
+
+  const SineKeys& sine_keys;
   NumberKey ramp{*this,
                  "ramp",
                  Range::at_least(0),
@@ -50,7 +56,8 @@ struct LoadTimeKeys : KeyTable {
                "times not decreasing; straight between the pairs, a jump between two of the same time"};
   SubtableKey sine{*this, "sine", sine_keys, in_words(""), "an oscillation"};
 };
-inline const LoadTimeKeys load_time_keys;
+inline const LoadTimeKeys traction_time_keys{"traction.time", traction_sine_keys},
+    gravity_time_keys{"gravity_time", gravity_sine_keys};
 
 /// dt is only known after the materials: a ramp given in steps is kept as such until then.
 struct TimeShape {
@@ -61,6 +68,6 @@ struct TimeShape {
   TimeFunction at(double dt) const;
 };
 
-TimeShape read_time_function(TableReader r);
+TimeShape read_time_function(TableReader r, const LoadTimeKeys& keys);
 
 }  // namespace vsb::app

@@ -64,7 +64,7 @@ TractionSpec read_traction(TableReader r, const Scene& scene, size_t number, Tim
   if (traction.imposition == Imposition::material_points)
     traction.layer = read_region(r, keys.layer, dimension, true);
   traction.points_per_cell = static_cast<int>(r.read(keys.points_per_cell, dimension == 3 ? 4 : 8));
-  time = read_time_function(r.table(keys.time));
+  time = read_time_function(r.table(keys.time), traction_time_keys);
   r.finish();
   return traction;
 }

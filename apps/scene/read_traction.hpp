@@ -49,7 +49,7 @@ struct TractionKeys : KeyTable {
                  "of imposition = \"material_points\": which particles may carry the load"};
   IntegerKey points_per_cell{*this, "points_per_cell",        1, 64, in_words("`8`, in dimension 3 `4`"),
                              "",    "sampling of the surface"};
-  SubtableKey time{*this, "time", load_time_keys, in_words("full load from the start"),
+  SubtableKey time{*this, "time", traction_time_keys, in_words("full load from the start"),
                    "how it varies in time"};
 };
 inline const TractionKeys traction_keys;

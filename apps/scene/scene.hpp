@@ -41,8 +41,8 @@ struct BodySpec {
   double density = 0;  ///< kg/m^3
   MaterialSpec material{};
   Affine<Stress6> stress;
-  Affine<Point> velocity;  ///< m/s
-  std::string where;       ///< file:line:column
+  Affine<Point> velocity;           ///< m/s
+  std::string where, stress_where;  ///< file:line:column of the table, and of its key `stress`
 };
 
 /// Whether particles lie on rings or are jittered, so that sums over those of a cell are not exact.
@@ -182,7 +182,8 @@ struct Scene {
   FaceSpec faces;
   std::vector<BodySpec> bodies;
   std::vector<TractionSpec> tractions;
-  Point gravity{};  ///< m/s^2
+  Point gravity{};  ///< m/s^2, in full
+  TimeFunction gravity_time;
   MethodSpec method;
   TimeSpec time;
   StaticSpec static_solution;
@@ -195,6 +196,11 @@ struct Scene {
 
   std::string resolved;  ///< the scene with all defaults, as TOML
 };
+
+/// Whether there is gravity, at some time.
+inline bool has_gravity(const Scene& scene) {
+  return scene.gravity != Point{};
+}
 
 /// Whether particles may be removed on the way.
 inline bool may_lose_particles(const Scene& scene) {

@@ -3,6 +3,7 @@
 /// How a load varies in time: a factor on its full value.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -46,7 +47,22 @@ class TimeFunction {
     return std::numeric_limits<double>::infinity();
   }
 
+  /// The largest slope of the factor, up or down, 1/s; infinite at a jump.
+  double steepest() const {
+    if (const auto* points = std::get_if<Table>(&form_)) return steepest(*points);
+    if (const auto* ramp = std::get_if<SmoothRamp>(&form_)) return 1.875 / ramp->duration;  // in its middle
+    const auto& sine = std::get<Sine>(form_);
+    return 2 * pi * std::abs(sine.amplitude) / sine.period;
+  }
+
  private:
+  static double steepest(const Table& points) {
+    double most = 0;
+    for (size_t i = 1; i < points.size(); ++i)
+      if (const double change = std::abs(points[i].second - points[i - 1].second); change > 0)
+        most = std::max(most, change / (points[i].first - points[i - 1].first));
+    return most;
+  }
   static double factor(const Table& points, double t) {
     if (t < points.front().first) return points.front().second;
     for (size_t i = 1; i < points.size(); ++i) {

@@ -98,11 +98,11 @@ std::string text(const Stress6& stress) {
 void refuse_stress_beyond_yield(const Scene& scene, const PlacedParticles& placed) {
   for (size_t b = 0; b < scene.bodies.size(); ++b) {
     const auto& body = scene.bodies[b];
-    if (!is_plastic(body.material.law)) continue;
+    if (!is_plastic(body.material.law) || body.stress_where.empty()) continue;
     const auto worst = largest_excess(scene, b, placed);
     if (worst.share == 0) continue;
     throw SetupError(
-        body.where,
+        body.stress_where,
         fmt::format("body[{}].stress = {} at {}: is beyond the yield surface of the material, which would "
                     "return it to {} in the first step; allowed is {}",
                     b, text(worst.stress), position_text(scene, worst.at, 4), text(worst.returned),

@@ -71,8 +71,8 @@ struct PlacedParticles {
 
 /// Puts a particle at every point of a body's lattice that lies in its shape and in the grid, then moves it
 /// by the body's jitter; for a cut lattice see setup/cut_lattice.hpp. Then fits moments, where asked. Throws
-/// SetupError for an empty body, for bodies that overlap, and for a jitter that moves a particle out of the
-/// grid.
+/// SetupError for an empty body, for bodies that overlap, for a jitter that moves a particle out of the grid,
+/// and for an initial stress that a material cannot have.
 PlacedParticles place_particles(const Scene& scene);
 
 /// Their mass, kg, and its centre.

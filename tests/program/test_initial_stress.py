@@ -19,7 +19,7 @@ material = {{ youngs_modulus = 1e8, poisson_ratio = 0.3, {law} }}
 
 stress = {stress}
 """
-LINE = 6  # of the body
+LINE = 12  # of the stress
 FRICTION = math.radians(30.0)
 UNIAXIAL = 2 * 20e3 * math.cos(FRICTION) / (1 - math.sin(FRICTION))  # strength of the Mohr-Coulomb body below
 # How a law is written, and a stress on its yield surface.
@@ -86,7 +86,8 @@ class InitialStress(ProgramTest):
         self.refuse(law, [0, -100e3, 0, 0, 0, 0], "--out", out, command="run",
                     words=("(0, -100000, 0, 0, 0, 0) Pa", "s1 - s3 <= 2 cohesion"))
         self.assertFalse(out.exists())
-        self.refuse(law, [0, 0, 0, 0, 0, 0], "--threads", 1, "--set", "body[0].stress=[0, -1e5, 0, 0, 0, 0]")
+        self.refuse(law, [0, 0, 0, 0, 0, 0], "--threads", 1, "--set", "body[0].stress=[0, -1e5, 0, 0, 0, 0]",
+                    words=("--set body[0].stress",))
 
 
 if __name__ == "__main__":

@@ -254,7 +254,7 @@ material = {{ youngs_modulus = {modulus}, poisson_ratio = 0.0 }}
 
     def test_rest_without_any_load(self):
         ends = ("--set", "traction[0].time={ table = [[0.0, 1.0], [1.0, 0.0]] }")
-        self.refuse(BAR, "time.until_static", "every traction ends at 0", "time.steps", extra=ends)
+        self.refuse(BAR, "time.until_static", "every load ends at 0", "time.steps", extra=ends)
         for kept in (("--set", "gravity=[-1.0]"), ("--set", "body[0].stress=[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]")):
             self.check(BAR, *ends, *kept)
 
