@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "report/energy_advice.hpp"
 #include "report/neighbour_advice.hpp"
 #include "report/spline_rest.hpp"
 #include "report/thin_bodies.hpp"
@@ -175,14 +176,12 @@ std::string locking_text(const Scene& scene, const BodySpec& body) {
   if (may_lock(body))
     return fmt::format(
         "body '{}' has poisson_ratio = {:g} and method.volumetric = \"full\": near 0.5 cells lock, and "
-        "stresses are "
-        "wrong by 5 % at 0.4, 40 % at 0.49 (linear functions; a tenth of it with B-splines); {}",
+        "stresses are wrong by 5 % at 0.4, 40 % at 0.49 (linear functions; a tenth of it with B-splines); {}",
         body.name, body.material.poisson_ratio, cure);
   if (is_plastic(body.material.law) && scene.method.basis != BasisKind::quadratic_bspline)
     return fmt::format(
         "body '{}' may yield, and method.volumetric = \"full\": plastic flow keeps the volume, cells lock, "
-        "and the body "
-        "bears more than it can (a vertical cut stood at 1.3 times its critical height); {}",
+        "and the body bears more than it can (a vertical cut stood at 1.3 times its critical height); {}",
         body.name, cure);
   return {};
 }
@@ -283,6 +282,7 @@ std::vector<std::string> scene_advice(const Scene& scene) {
         "particle "
         "hardly come to rest, so the run may never become static; {:g}, stronger damping (0.4), or --static",
         scene.time.until_static->force_ratio, static_spline_ratio));
+  if (const auto text = energy_advice(scene); !text.empty()) advice.push_back(text);
   if (scene.time.kappa > largest_stable_kappa(scene))
     advice.push_back(
         fmt::format("time.kappa = {:.4g} is above the stability limit of about {:g}; give a smaller one",

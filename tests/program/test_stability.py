@@ -32,6 +32,15 @@ class Stability(ProgramTest):
             resolved = vsb("check", self.write(setting + text)).stdout
             self.assertIn(f"position_velocity = '{velocity}'", resolved)
 
+    def test_the_paper_step_is_told(self):
+        told = "feeds energy"
+        for arguments, expected in (((), False), (("--set", "method.position_velocity=grid"), True),
+                                    (("--set", "method.position_velocity=grid", "--set", "method.damping=0.2"), False),
+                                    (("--set", "method.position_velocity=grid", "--set", "time.steps=100"), False)):
+            with self.subTest(arguments=arguments):
+                done = vsb("check", SCENES / "tube.toml", *arguments)
+                self.assertEqual(told in done.stderr, expected, done.stderr)
+
     def test_pic_takes_the_particles_own_vibrations(self):
         flip, mixed = (self.run_tube("--set", "time.steps=6000", "--set", f"method.pic={pic}", out=f"pic{pic}")
                        for pic in (0, 0.004))
