@@ -66,7 +66,7 @@ struct MethodKeys : KeyTable {
       "",
       "share of PIC in the velocities of particles: takes away what the nodes do not see, such as the "
       "heat of particles that cross many cells; .01 kappa is usual; a wave of n cells loses pi^2 pic / "
-      "(2 n kappa) of its amplitude a period"};
+      "(2 n kappa) of its amplitude a period, and bodies that turn are braked"};
   BooleanKey allow_particles_on_grid_lines{
       *this, "allow_particles_on_grid_lines", false,
       "takes particles that lie on the faces of cells, whose cell is a matter of round-off"};
