@@ -114,7 +114,7 @@ class GravityTime(ProgramTest):
             self.assertNotEqual(parts["state_hash"], self.sunk(*of_engine, *steps(120), "--set", "gravity_time=")[1]["state_hash"])
             done = vsb("run", self.folder / "scene.toml", *of_engine, *steps(130), "--resume", "--out", self.folder / f"parts-{engine}",
                        "--set", "gravity_time={ ramp_steps = 101 }")
-            self.assertEqual(done.returncode, 2)
+            self.assertEqual(done.returncode, 4)
             self.assertIn("gravity_time.ramp_steps", done.stderr)
 
     def test_a_static_solution_is_that_of_the_final_value(self):
