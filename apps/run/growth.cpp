@@ -96,6 +96,8 @@ double growth_rate(const Scene& scene, Simulation& at) {
       }
     } catch (const LeftGrid&) {
       break;
+    } catch (const Diverged&) {
+      break;
     }
     log_size.push_back(0.5 * std::log(sum));
     if (sum > largest_growth * largest_growth * at_start && log_size.size() >= fewest_windows) break;

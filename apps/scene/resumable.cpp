@@ -13,15 +13,9 @@ namespace vsb::app {
 
 namespace {
 
-constexpr std::array<const char*, 9> keys = {"title",
-                                             "growth",
-                                             "output",
-                                             "compare",
-                                             "published",
-                                             "static",
-                                             "time.steps",
-                                             "time.until_static",
-                                             "removal.max_stages"};
+constexpr std::array<const char*, 9> keys = {
+    "title",  "output",     "compare",           "published",         "growth",
+    "static", "time.steps", "time.until_static", "removal.max_stages"};
 
 bool may_change(const std::string& key) {
   return std::find(keys.begin(), keys.end(), key) != keys.end();

