@@ -33,9 +33,8 @@ std::vector<std::string> support_advice(const Scene& scene, Simulation& simulati
   const auto unsupported = simulation.unsupported_load(settled);
   if (unsupported.empty()) return {};
   return {fmt::format(
-      "at the start, and at full load, {}: the body moves until something stops it, and what is then called "
-      "static is not the state at its present position; hold it at a face of the grid ('faces'), or balance "
-      "its loads",
+      "at the start, and at full load, {}; else the body moves until something stops it, and what is then "
+      "called static is not the state at its present position",
       unsupported)};
 }
 

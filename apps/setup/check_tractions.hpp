@@ -8,6 +8,7 @@
 #include <vsb/kernels/statics/unsupported_load.hpp>
 #include "setup/loads.hpp"
 #include "setup/scene_grid.hpp"
+#include "setup/support_text.hpp"
 
 namespace vsb::app {
 
@@ -70,30 +71,20 @@ void check_tractions(const Scene& scene, const Basis& basis, const Occupancy<Dev
   }
 }
 
-/// What no support takes up of the loads, in words; empty where nothing is found.
+/// What no support takes up of the loads, in words (support_text.hpp); empty where nothing is found.
 template <int Dim>
 std::string text(const Scene& scene, const UnsupportedLoad<Dim>& load) {
   if (!load.found) return {};
-  const auto list = [](const auto& vector) {
-    std::string numbers;
-    for (int i = 0; i < vector.size; ++i) numbers += fmt::format("{}{:.4g}", i == 0 ? "" : ", ", vector[i]);
-    return numbers;
-  };
-  return fmt::format(
-      "no support takes up a force of ({}) N{} on the body around {}, {:.2g} of its nodal forces",
-      list(load.force), Dim > 1 ? fmt::format(" and a torque of ({}) N m", list(load.torque)) : "",
-      position_text(scene, to_scene(load.middle, local_origin(scene)), 4), load.share);
+  LooseLoad loose{load.share, to_scene(load.middle, local_origin(scene))};
+  for (int i = 0; i < Dim; ++i) loose.force[static_cast<size_t>(i)] = load.force[i];
+  for (int i = 0; i < 3; ++i) loose.torque[static_cast<size_t>(i)] = load.torque[i];
+  return support_text(scene, loose);
 }
 
 /// Throws SetupError for a load of a static solution that nothing takes up.
 template <int Dim>
 void refuse_unsupported(const Scene& scene, const UnsupportedLoad<Dim>& load) {
-  if (load.found)
-    throw SetupError(
-        fmt::format("--static: {}, so there is no static state: hold the body at a face of the grid "
-                    "('faces'), or balance "
-                    "its loads",
-                    text(scene, load)));
+  if (load.found) throw SetupError(fmt::format("--static: there is no static state: {}", text(scene, load)));
 }
 
 }  // namespace vsb::app
