@@ -135,7 +135,7 @@ class Keys(ProgramTest):
             for scene, arguments, word in (
                     ("cylinder-polar", (), "uniform grids"),
                     ("cylinder", ("--set", "precision=float"), "double"),
-                    ("cylinder", ("--set", 'traction[0].imposition="nodal"'), "nodes"),
+                    ("cylinder", ("--set", 'traction[0].imposition="nodal"'), "at a node"),
                     ("cylinder", ("--set", 'traction[0].imposition="virtual_stress_original"'), "whole cells")):
                 done = self.check(*basis(name), *arguments, scene=scene)
                 self.assertEqual(done.returncode, 2, f"{name} {scene} {arguments}")
