@@ -10,6 +10,7 @@
 /// method of fourth order), vanishes at the outer face.
 #pragma once
 
+#include <limits>
 #include <vsb/physics/polar.hpp>
 
 namespace vsb {
