@@ -82,7 +82,7 @@ double growth_rate(const Scene& scene, Simulation& at) {
     for (size_t k = 0; k < a.size(); ++k) sum += (b[k] - a[k]) * (b[k] - a[k]);
     return sum;
   };
-  const double at_start = difference();
+  const double at_start = difference(), largest = largest_growth * largest_growth * at_start;
   const auto stride =
       std::max(1LL, std::llround(scene.growth->time / scene.time.dt / static_cast<double>(windows * looks)));
   std::vector<double> log_size;  // of the difference, window by window
@@ -92,7 +92,10 @@ double growth_rate(const Scene& scene, Simulation& at) {
       for (long long n = 0; n < looks; ++n) {
         calm->advance(stride);
         disturbed->advance(stride);
-        sum += difference() / static_cast<double>(looks);
+        const double now = difference();
+        if (!(now <= largest) && log_size.size() < fewest_windows)  // too fast for windows
+          return 0.5 * std::log(now / at_start) / (calm->time() - at.time());
+        sum += now / static_cast<double>(looks);
       }
     } catch (const LeftGrid&) {
       break;
@@ -100,7 +103,7 @@ double growth_rate(const Scene& scene, Simulation& at) {
       break;
     }
     log_size.push_back(0.5 * std::log(sum));
-    if (sum > largest_growth * largest_growth * at_start && log_size.size() >= fewest_windows) break;
+    if (sum > largest) break;
   }
   if (log_size.size() < fewest_windows) return std::numeric_limits<double>::quiet_NaN();
   return slope_of_second_half(log_size) / (static_cast<double>(looks * stride) * scene.time.dt);
