@@ -175,7 +175,7 @@ class BadScenes(ProgramTest):
                 ("spacing =", "spacng =", "lower, polar, spacing, upper, x, y"),
                 ("density =", "densty =", "boundary, density, jitter, lattice, material, name, particles_per_cell, seed, shape, stress, velocity"),
                 ("kappa =", "kapa =", "dt, kappa, steps, until_static"),
-                ("dimension =", "dimensoin =", "body, compare, dimension, faces, gravity, grid, method, name, output, precision, "
+                ("dimension =", "dimensoin =", "body, compare, dimension, faces, gravity, gravity_time, grid, growth, method, name, output, precision, "
                  "published, removal, setting, static, time, title, traction"),
                 ("upper = [3.0, 3.0]", "uper = [3.0, 3.0]", "lower, upper"),
                 ("pressure =", "presure =", "affine, configuration, exact_ellipse, hydrostatic, imposition, layer, name, nodes, planar_blend, points_per_cell, pressure, "

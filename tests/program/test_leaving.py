@@ -30,7 +30,7 @@ SQUEEZED = """
     gravity = [0.0, -10.0]
     grid = { lower = [0.0, 0.0], upper = [4.0, 3.0], spacing = 0.25 }
     faces = { y_min = "roller", x_min = "outflow", x_max = "outflow" }
-    time = { kappa = 0.4, steps = 1500 }
+    time = { kappa = 0.4, steps = 1000 }
     [[body]]
     shape.box = { lower = [0.5, 0.0], upper = [3.5, 2.0] }
     particles_per_cell = 2
