@@ -19,7 +19,7 @@ constexpr double disturbance = 1e-10;
 constexpr double largest_growth = 1e6;
 /// Into which the time is divided, and differences that are looked at in each: vibrations come and go in
 /// between.
-constexpr long long windows = 48, looks = 16;
+constexpr long long windows = 48, most_looks = 16;
 /// Over as many the growth can be told from them.
 constexpr size_t fewest_windows = 6;
 
@@ -83,13 +83,14 @@ double growth_rate(const Scene& scene, Simulation& at) {
     return sum;
   };
   const double at_start = difference(), largest = largest_growth * largest_growth * at_start;
-  const auto stride =
-      std::max(1LL, std::llround(scene.growth->time / scene.time.dt / static_cast<double>(windows * looks)));
+  const long long steps = std::llround(scene.growth->time / scene.time.dt),
+                  stride = std::max(1LL, steps / (windows * most_looks)), looks = steps / (windows * stride);
   std::vector<double> log_size;  // of the difference, window by window
-  while (static_cast<long long>(log_size.size()) < windows && !interrupt_requested()) {
+  while (static_cast<long long>(log_size.size()) < windows) {
     double sum = 0;
     try {
       for (long long n = 0; n < looks; ++n) {
+        if (interrupt_requested()) return std::numeric_limits<double>::quiet_NaN();
         calm->advance(stride);
         disturbed->advance(stride);
         const double now = difference();

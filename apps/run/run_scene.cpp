@@ -22,6 +22,8 @@ RunResult run_steps(const Scene& scene, const RunOptions& options) {
 }  // namespace
 
 RunResult run_scene(const Scene& scene, const RunOptions& options) {
+  if (scene.growth && options.solution != Solution::steps)
+    throw SetupError("[growth] is of a run by time steps: leave it out of a static solution or a balance");
   try {
     switch (options.solution) {
       case Solution::static_state:

@@ -14,7 +14,8 @@ struct GrowthKeys : KeyTable {
             "growth",
             "At the end of the run, which should be at rest: how fast a small disturbance grows from there "
             "(`growth_rate` of the summary, 1/s). It costs twice its time in steps.") {}
-  NumberKey time{*this, "time", Range::positive(), required, "s", "for which the disturbance is followed"};
+  NumberKey time{*this,    "time", Range::in_words("> 0, from 192 time steps to 1e7"),
+                 required, "s",    "for which the disturbance is followed"};
   NumberKey damping{*this, "damping", {0, 1, false, true}, 0.0, "", "method.damping meanwhile"};
 };
 inline const GrowthKeys growth_keys;

@@ -71,8 +71,11 @@ class InitialStress(ProgramTest):
         for law in ('law = "linear_elastic"', 'law = "von_mises", yield_stress = 1.0'):
             self.accept(law, [-1e7, -1e7, -1e7, 0, 0, 0])
         self.accept('law = "linear_elastic"', [-1e6, 0, 0, 5e5, 0, 0])
-        # Components that a plane has not are not looked at.
-        self.accept('law = "von_mises", yield_stress = 1.0', [0, 0, 0, 0, 1e6, 1e6])
+        # Components that a plane has not would be dropped without a word.
+        for dimension, stress, beyond in ((2, [0, 0, 0, 0, 0, 1], "yz and xz"), (1, [0, 0, 0, 1, 0, 0], "xy, yz and xz")):
+            done = self.check('law = "linear_elastic"', stress, dimension=dimension)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(f"in dimension {dimension} {beyond} must be 0", done.stderr)
         self.refuse('law = "von_mises", yield_stress = 1.0', [0, 0, 0, 0, 1e6, 1e6], dimension=3)
 
     def test_a_stress_that_varies_is_looked_at_where_the_particles_are(self):

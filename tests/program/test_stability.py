@@ -53,6 +53,8 @@ class Stability(ProgramTest):
                 (("method.pic=0.01", "method.position_velocity=grid"), "method.pic"),
                 (("method.pic=1",), "method.pic = 1"),
                 (("growth.time=0",), "growth.time = 0"),
+                (("growth.time=0.01",), "growth.time = 0.01"),
+                (("growth.time=1e30",), "growth.time = 1e+30"),
                 (("growth.time=1", "faces.x_max=outflow"), "growth"),
                 (("growth.time=1", "precision=float", "method.basis=linear"), "growth"),
                 (("compare.pressure=1e6",), "compare.pressure"),
@@ -62,6 +64,12 @@ class Stability(ProgramTest):
                 done = vsb("check", SCENES / "tube.toml", *arguments)
                 self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
                 self.assertIn(words, done.stderr)
+
+
+    def test_growth_is_of_steps(self):
+        done = vsb("run", SCENES / "tube.toml", "--static", "--set", "growth.time=1.0", "--out", self.folder / "s")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("[growth]", done.stderr)
 
 
 if __name__ == "__main__":
