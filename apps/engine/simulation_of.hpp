@@ -87,8 +87,7 @@ class SimulationOf final : public Simulation {
     for (long long n = 0; n < steps;) {
       use_engine_of_steps();
       set_gravity(load_time_at(step_ + 1));
-      const auto [made, lost] =
-          engine_->step([&](int ahead) { set_tractions(load_time_at(step_ + ahead)); });
+      const auto [made, lost] = engine_->step([&](int ahead) { set_tractions(load_time_at(step_ + ahead)); });
       if (made) {
         ++step_;
         ++n;

@@ -43,9 +43,9 @@ std::vector<std::string> support_advice(const Scene& scene, Simulation& simulati
 void refuse_unsettled_loads(const Scene& scene, const std::string& who) {
   for (const auto& load : loads_in_time(scene))
     if (!std::isfinite(load.time.settled_at()))
-      throw SetupError(load.where,
-                       fmt::format("{}: {} is a sine, which never settles, so there is no final load", who,
-                                   load.name));
+      throw SetupError(
+          load.where,
+          fmt::format("{}: {} is a sine, which never settles, so there is no final load", who, load.name));
 }
 
 void print_warnings(const std::vector<std::string>& warnings) {

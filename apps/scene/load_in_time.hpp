@@ -11,9 +11,9 @@
 namespace vsb::app {
 
 struct LoadInTime {
-  std::string name;         ///< for messages: "traction 'top'", "gravity"
-  std::string key;          ///< of its time: "traction[0].time", "gravity_time"
-  std::string where;        ///< file:line:column of its table; empty: the scene as a whole
+  std::string name;          ///< for messages: "traction 'top'", "gravity"
+  std::string key;           ///< of its time: "traction[0].time", "gravity_time"
+  std::string where;         ///< file:line:column of its table; empty: the scene as a whole
   const TimeFunction& time;  ///< of the scene, which must outlive this
 };
 

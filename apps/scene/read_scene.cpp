@@ -161,8 +161,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
   if (r.has(keys.gravity_time) && !has_gravity(scene))
     r.fail(keys.gravity_time, "varies a gravity of 0: give 'gravity', or leave it out");
   TimeShape gravity_shape;
-  if (has_gravity(scene))
-    gravity_shape = read_time_function(r.table(keys.gravity_time), gravity_time_keys);
+  if (has_gravity(scene)) gravity_shape = read_time_function(r.table(keys.gravity_time), gravity_time_keys);
   if (!r.has(keys.grid)) r.missing(keys.grid, "a table with lower, upper and spacing");
   scene.grid = read_grid(r.table(keys.grid, grid_keys.beyond(scene.dimension)), scene.dimension);
   if (scene.grid.mapped() && scene.single_precision)

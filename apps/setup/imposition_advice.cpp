@@ -50,7 +50,8 @@ void for_each_outer_face(const Scene& scene, const OccupiedCells& grid, const Vi
               auto ijk = cell;
               for (size_t i = 0; i < d; ++i) ijk[i] += static_cast<int>(corner >> i & 1);
               const bool outer = static_cast<int>(corner >> axis & 1) == side;
-              (outer ? face.corners : face.opposite).push_back(node_position(scene.grid, scene.dimension, ijk));
+              (outer ? face.corners : face.opposite)
+                  .push_back(node_position(scene.grid, scene.dimension, ijk));
             }
             visit(face);
           }
@@ -61,14 +62,15 @@ void for_each_outer_face(const Scene& scene, const OccupiedCells& grid, const Vi
 Point point_of(std::vector<Point> corners, std::array<double, 2> at) {
   for (const double t : at) {
     if (corners.size() == 1) break;
-    for (size_t c = 0; 2 * c < corners.size(); ++c) corners[c] = between(corners[2 * c], corners[2 * c + 1], t);
+    for (size_t c = 0; 2 * c < corners.size(); ++c)
+      corners[c] = between(corners[2 * c], corners[2 * c + 1], t);
     corners.resize(corners.size() / 2);
   }
   return corners.front();
 }
 
-/// By which share of its cell a face lies outside the body, along a line into the cell; nothing where the line
-/// misses the body.
+/// By which share of its cell a face lies outside the body, along a line into the cell; nothing where the
+/// line misses the body.
 std::optional<double> gap_along(const Region& body, const Point& outer, const Point& inner) {
   constexpr double touching = 1e-6;
   constexpr int samples = 16;
@@ -183,7 +185,8 @@ Shortfall shortfall_of(const Scene& scene, size_t k, const PlacedParticles& plac
 
 std::string material_points_text(const TractionSpec& traction, const Shortfall& mean) {
   return fmt::format(
-      "traction '{}' has imposition = \"material_points\", which loads the outermost particles as if they lay "
+      "traction '{}' has imposition = \"material_points\", which loads the outermost particles as if they "
+      "lay "
       "on the surface; they lie {:.2g} of a cell below it, so that stresses in the last cells come out about "
       "{:.2g} % smaller than the load; more particles per cell make it less, imposition = \"virtual_stress\" "
       "has no such error",

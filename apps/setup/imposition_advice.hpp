@@ -6,9 +6,9 @@
 /// must be the surface. Where the body ends before them, by a share g of a cell, a plane face has
 /// 1 / (1 - g) times the stress of its load in the last cells: the same nodal forces meet less material.
 ///
-/// imposition = "material_points" loads the particles nearest to the surface as if they lay on it. With linear
-/// functions, a plane face in whose last cells the body reaches a share f deep, and whose particles lie d
-/// cells below the surface, has (1 - d / f) times the stress of its load in those cells.
+/// imposition = "material_points" loads the particles nearest to the surface as if they lay on it. With
+/// linear functions, a plane face in whose last cells the body reaches a share f deep, and whose particles
+/// lie d cells below the surface, has (1 - d / f) times the stress of its load in those cells.
 #pragma once
 
 #include <string>

@@ -16,7 +16,8 @@ namespace vsb::app {
 
 namespace {
 
-/// Of the largest stress component: what a stress on the yield surface may be off by, in single precision too.
+/// Of the largest stress component: what a stress on the yield surface may be off by, in single precision
+/// too.
 constexpr double round_off = 1e-6;
 
 /// The stress to which a material without plastic strain returns a trial stress; this one, where it may be.

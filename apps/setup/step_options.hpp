@@ -13,7 +13,8 @@ template <int Dim, class Real>
 Vector<Dim, Real> gravity_at(const Scene& scene, double t) {
   const double factor = scene.gravity_time(t);
   Vector<Dim, Real> gravity;
-  for (int i = 0; i < Dim; ++i) gravity[i] = static_cast<Real>(factor * scene.gravity[static_cast<size_t>(i)]);
+  for (int i = 0; i < Dim; ++i)
+    gravity[i] = static_cast<Real>(factor * scene.gravity[static_cast<size_t>(i)]);
   return gravity;
 }
 
