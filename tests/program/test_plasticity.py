@@ -209,5 +209,34 @@ class Bodies(ProgramTest):
         self.assertIn("steps on cell lanes", vsb("check", self.write(scene_of(MOHR_COULOMB, MOHR_COULOMB))).stdout)
 
 
+# A vertical cut of N = gamma H / c = 5, 1.3 times the critical 3.83.
+CUT = """
+dimension = 2
+gravity = [0.0, -10.0]
+grid = { lower = [0.0, 0.0], upper = [8.0, 5.0], spacing = 0.25 }
+faces = { x_min = "roller", y_min = "fixed" }
+[[body]]
+particles_per_cell = 2
+density = 2000.0
+shape.box = { lower = [0.0, 0.0], upper = [5.0, 3.0] }
+material = { law = "tresca", cohesion = 12e3, youngs_modulus = 2e7, poisson_ratio = 0.3 }
+[method]
+damping = 0.5
+[time]
+kappa = 0.5
+until_static = { max_steps = 8000 }
+"""
+
+
+class Locking(ProgramTest):
+    def test_a_cut_above_its_critical_height_fails_unless_cells_lock(self):
+        moved = {}
+        for volumetric, more in (("full", ("--set", "method.volumetric=full")), ("averaged", ())):
+            summary = self.run_scene(self.write(CUT), *more, "--set", "time.until_static.max_steps=8000", out=volumetric)
+            self.assertEqual(summary["static"], volumetric == "full")
+            moved[volumetric] = summary["largest_displacement"]
+        self.assertGreater(moved["averaged"], 4 * moved["full"])
+
+
 if __name__ == "__main__":
     unittest.main()
